@@ -1,0 +1,191 @@
+//! The catalogue: pieces, and the table of what each join costs.
+
+use thiserror::Error;
+
+use super::cut_up::cut_up;
+use super::piece::{Endpoint, Piece};
+use crate::planar::Region;
+use crate::reeb::Cut;
+use crate::topology::Descriptor;
+
+/// How a join is weighed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CostWeights {
+    /// The weight α of positions against tangents, 0 to 1 (Zhou 2014 §3.6.1 uses 0.8).
+    pub alpha: f64,
+    /// The cost λ of a jump, which is a successor that is not the exemplar's own next piece. 0 is the paper,
+    /// which then favours short cycles repeated many times. Positions are weighed in units of 1/60 of the
+    /// exemplar's longer side, so that a cost does not depend on the size of the drawing.
+    pub jump: f64,
+    /// How many successors of each piece are kept: the cheapest, and always the exemplar's own next piece.
+    pub successors: usize,
+}
+
+/// A weight out of range.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error("{name} is {value}; it must be {wanted}")]
+pub struct CostWeightsError {
+    /// The parameter.
+    pub name: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// What would be accepted.
+    pub wanted: &'static str,
+}
+
+impl Default for CostWeights {
+    fn default() -> Self {
+        Self { alpha: 0.8, jump: 1.0, successors: 16 }
+    }
+}
+
+impl CostWeights {
+    /// Checks the ranges.
+    ///
+    /// # Errors
+    /// [`CostWeightsError`] names the parameter that is not a number in range.
+    pub fn validate(&self) -> Result<(), CostWeightsError> {
+        if !(0.0..=1.0).contains(&self.alpha) {
+            return Err(CostWeightsError { name: "alpha", value: self.alpha, wanted: "from 0 to 1" });
+        }
+        if !(0.0..=1000.0).contains(&self.jump) {
+            return Err(CostWeightsError { name: "jump-cost", value: self.jump, wanted: "from 0 to 1000" });
+        }
+        Ok(())
+    }
+}
+
+/// The join of a piece to a successor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Join {
+    /// The successor.
+    pub to: usize,
+    /// D(i, j) of Zhou 2014 §3.6.1, and λ if this is a jump.
+    pub cost: f64,
+    /// The vertical offset τ that aligns the successor best, in millimetres: added to the offset of the piece
+    /// it gives the successor's.
+    pub rise_mm: f64,
+    /// Whether the successor is the exemplar's own next piece.
+    pub is_natural: bool,
+}
+
+/// The pieces of an exemplar and the joins between them.
+#[derive(Debug, Clone)]
+pub struct Catalogue {
+    pieces: Vec<Piece>,
+    descriptors: Vec<Descriptor>,
+    joins: Vec<Vec<Join>>,
+    width_mm: f64,
+    height_mm: f64,
+}
+
+/// The side of the exemplar on which costs were tuned; positions are weighed as if the exemplar had it.
+const REFERENCE_MM: f64 = 60.0;
+
+impl Catalogue {
+    /// Cuts `region` at `cuts` and weighs every join.
+    pub fn new(region: &Region, cuts: &[Cut], weights: &CostWeights) -> Self {
+        let pieces = cut_up(region, cuts);
+        let (low, high) = region.bounds_mm().unwrap_or_default();
+        let size = high - low;
+        let unit_mm = size.max_element() / REFERENCE_MM;
+        let joins = (0..pieces.len()).map(|from| joins_from(&pieces, from, unit_mm, weights)).collect();
+        let descriptors = pieces.iter().map(|p| p.descriptor.clone()).collect();
+        Self { pieces, descriptors, joins, width_mm: size.x, height_mm: size.y }
+    }
+
+    /// The pieces, in the exemplar's order.
+    pub fn pieces(&self) -> &[Piece] {
+        &self.pieces
+    }
+
+    /// The descriptors of the pieces.
+    pub fn descriptors(&self) -> &[Descriptor] {
+        &self.descriptors
+    }
+
+    /// The joins that may follow each piece, cheapest first.
+    pub fn joins(&self) -> &[Vec<Join>] {
+        &self.joins
+    }
+
+    /// The join from one piece to another, if it was kept.
+    pub fn join(&self, from: usize, to: usize) -> Option<&Join> {
+        self.joins[from].iter().find(|j| j.to == to)
+    }
+
+    /// The width of the exemplar in millimetres.
+    pub fn width_mm(&self) -> f64 {
+        self.width_mm
+    }
+
+    /// The height of the exemplar in millimetres.
+    pub fn height_mm(&self) -> f64 {
+        self.height_mm
+    }
+}
+
+fn joins_from(pieces: &[Piece], from: usize, unit_mm: f64, weights: &CostWeights) -> Vec<Join> {
+    let right = &pieces[from].right;
+    let mut joins: Vec<Join> = (0..pieces.len())
+        // A piece after itself is the shortest of the degenerate cycles; slicing by events never allows it
+        // (Zhou 2014 §5.2), uniform slicing would.
+        .filter(|&to| to != from && pieces[to].left.len() == right.len())
+        .map(|to| {
+            let is_natural = to == from + 1;
+            let (cost, rise_mm) = join_cost(right, &pieces[to].left, unit_mm, weights.alpha);
+            let jump = if is_natural { 0.0 } else { weights.jump };
+            Join { to, cost: cost + jump, rise_mm, is_natural }
+        })
+        .collect();
+    joins.sort_by(|a, b| a.cost.total_cmp(&b.cost).then(a.to.cmp(&b.to)));
+    let natural = joins.iter().position(|j| j.is_natural);
+    if let Some(late) = natural.filter(|&at| at >= weights.successors) {
+        joins.swap(late, weights.successors.saturating_sub(1));
+    }
+    joins.truncate(weights.successors.max(1));
+    joins
+}
+
+/// α d_match + (1 − α) d_tangent and the best offset τ (Zhou 2014 §3.6.1).
+///
+/// d_match is the mean squared distance of endpoints after the best vertical offset, in square units;
+/// d_tangent sums 1 − cos of the angle between tangents over the endpoints. Without portals both are 0.
+fn join_cost(right: &[Endpoint], left: &[Endpoint], unit_mm: f64, alpha: f64) -> (f64, f64) {
+    if right.is_empty() {
+        return (0.0, 0.0);
+    }
+    let n = right.len() as f64;
+    let pairs = || right.iter().zip(left);
+    let rise_mm = pairs().map(|(r, l)| r.y_mm - l.y_mm).sum::<f64>() / n;
+    let squares: f64 = pairs().map(|(r, l)| (l.y_mm - r.y_mm + rise_mm).powi(2)).sum();
+    let d_match = squares / n / (unit_mm * unit_mm);
+    let d_tangent: f64 = pairs().map(|(r, l)| (1.0 - r.tangent.dot(l.tangent)).abs()).sum();
+    (alpha * d_match + (1.0 - alpha) * d_tangent, rise_mm)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec2;
+
+    fn side(ys: &[f64], angle: f64) -> Vec<Endpoint> {
+        ys.iter().map(|&y_mm| Endpoint { y_mm, tangent: DVec2::from_angle(angle) }).collect()
+    }
+
+    #[test]
+    fn the_best_offset_is_free_and_the_rest_is_not() {
+        let right = side(&[3.0, 1.0], 0.0);
+        let (cost, rise) = join_cost(&right, &side(&[2.5, 0.5], 0.0), 1.0, 0.8);
+        assert!(cost.abs() < 1e-12 && (rise - 0.5).abs() < 1e-12);
+        // One portal 0.4 wider: each end is off by 0.2.
+        let (cost, rise) = join_cost(&right, &side(&[3.2, 0.8], 0.0), 1.0, 0.8);
+        assert!((cost - 0.8 * 0.04).abs() < 1e-12 && rise.abs() < 1e-12);
+        // Tangents 60 degrees apart at two endpoints: 2 (1 - 1/2).
+        let (cost, _) = join_cost(&right, &side(&[3.0, 1.0], 60f64.to_radians()), 1.0, 0.8);
+        assert!((cost - 0.2).abs() < 1e-12);
+        // Twice the size in twice the unit costs the same.
+        let (large, _) = join_cost(&side(&[6.0, 2.0], 0.0), &side(&[6.4, 1.6], 0.0), 2.0, 0.8);
+        assert!((large - 0.8 * 0.04).abs() < 1e-12);
+    }
+}

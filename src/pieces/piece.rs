@@ -1,0 +1,72 @@
+//! One piece.
+
+use glam::DVec2;
+
+use crate::topology::Descriptor;
+
+/// One end of a portal (Zhou 2014 §3.3).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Endpoint {
+    /// Height above the middle of the exemplar, in millimetres.
+    pub y_mm: f64,
+    /// The unit tangent of the contour here, pointing right.
+    pub tangent: DVec2,
+}
+
+impl Endpoint {
+    /// The slope dy/dx of the contour here.
+    pub fn slope(&self) -> f64 {
+        self.tangent.y / self.tangent.x
+    }
+}
+
+/// An endpoint of a piece by its side and its number from the top. Portal j has endpoints 2j and 2j + 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum End {
+    /// On the left cut.
+    Left(usize),
+    /// On the right cut.
+    Right(usize),
+}
+
+/// A part of a contour inside a piece, from cut to cut, with the ink on its left.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chain {
+    /// Where it enters the piece.
+    pub start: End,
+    /// Where it leaves.
+    pub end: End,
+    /// Its vertices, both ends included: x in millimetres from the left cut, y above the exemplar's middle.
+    pub points: Vec<DVec2>,
+}
+
+/// The ink between two neighbouring cuts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Piece {
+    /// Where the piece begins in the exemplar, in millimetres from its left end.
+    pub x_mm: f64,
+    /// Its width w in millimetres.
+    pub width_mm: f64,
+    /// Portal endpoints on the left cut, top to bottom.
+    pub left: Vec<Endpoint>,
+    /// Portal endpoints on the right cut, top to bottom.
+    pub right: Vec<Endpoint>,
+    /// Parts of contours that reach a cut.
+    pub chains: Vec<Chain>,
+    /// Contours inside the piece: counter-clockwise islands and clockwise holes; coordinates as in [`Chain`].
+    pub loops: Vec<Vec<DVec2>>,
+    /// How its portals are connected inside it, and what is closed there.
+    pub descriptor: Descriptor,
+}
+
+impl Piece {
+    /// The number of portals on the left cut.
+    pub fn left_portals(&self) -> usize {
+        self.left.len() / 2
+    }
+
+    /// The number of portals on the right cut.
+    pub fn right_portals(&self) -> usize {
+        self.right.len() / 2
+    }
+}

@@ -1,0 +1,265 @@
+//! The automaton of reachable descriptors.
+//!
+//! A state is what a partial run of pieces has to be known by: how the open portals are connected, and how
+//! many components and holes are closed, where the goal reads them. The pairs of piece and state that can be
+//! reached do not depend on the length of the run, so states and transitions are found once, on demand, and
+//! remembered. A state that can no longer meet the goal is dead and never entered.
+
+use rustc_hash::FxHashMap;
+
+use super::descriptor::{Descriptor, Topology};
+
+/// Whether the run of pieces has two ends or closes on itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Shape {
+    /// Begins and ends without portals.
+    Open,
+    /// The last piece is glued to the first.
+    Ring,
+}
+
+/// The topology that is asked for. A `None` leaves a number free.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Goal {
+    /// Connected components.
+    pub components: Option<u32>,
+    /// Holes; the inside of a closed ring counts as one.
+    pub holes: Option<u32>,
+    /// Whether some component must wind all the way round (rings only).
+    pub closed_pattern: bool,
+}
+
+impl Goal {
+    /// Whether `topology` meets the goal.
+    pub fn admits(&self, topology: Topology) -> bool {
+        self.components.is_none_or(|n| n == topology.components)
+            && self.holes.is_none_or(|n| n == topology.holes)
+            && (topology.closed_pattern || !self.closed_pattern)
+    }
+
+    /// Whether anything is asked for.
+    pub fn is_free(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+/// A state of an [`Automaton`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct StateId(u32);
+
+impl StateId {
+    /// The state's number, counted from 0 in the order of discovery.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// Which of two states at the same place can stand for the other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dominance {
+    /// Only equal ones.
+    Equal,
+    /// With one component wanted and holes free, a coarser partition of the portals: whatever completes a
+    /// finer one to a single component completes the coarser one.
+    Coarser,
+    /// With no holes wanted and components free, a finer one: whatever completes a coarser one without a
+    /// cycle completes the finer one.
+    Finer,
+}
+
+/// What a run is known by: labels of its left portals (rings only) and right portals, and the counters that
+/// the goal reads (0 where it does not).
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+struct State {
+    left: Vec<u16>,
+    right: Vec<u16>,
+    closed: u32,
+    holes: u32,
+}
+
+/// States and transitions for one goal over one catalogue of pieces.
+pub struct Automaton<'a> {
+    pieces: &'a [Descriptor],
+    goal: Goal,
+    shape: Shape,
+    states: Vec<State>,
+    ids: FxHashMap<State, StateId>,
+    starts: FxHashMap<usize, Option<StateId>>,
+    steps: FxHashMap<(StateId, u32), Option<StateId>>,
+    comparisons: FxHashMap<(StateId, StateId), bool>,
+}
+
+impl<'a> Automaton<'a> {
+    /// The automaton over `pieces` for `goal`.
+    pub fn new(pieces: &'a [Descriptor], goal: Goal, shape: Shape) -> Self {
+        Self {
+            pieces,
+            goal,
+            shape,
+            states: Vec::new(),
+            ids: FxHashMap::default(),
+            starts: FxHashMap::default(),
+            steps: FxHashMap::default(),
+            comparisons: FxHashMap::default(),
+        }
+    }
+
+    /// The number of states found so far.
+    pub fn len(&self) -> usize {
+        self.states.len()
+    }
+
+    /// Whether no state was found yet.
+    pub fn is_empty(&self) -> bool {
+        self.states.is_empty()
+    }
+
+    /// The state of the run that is `piece` alone; `None` if it is dead.
+    pub fn start(&mut self, piece: usize) -> Option<StateId> {
+        if let Some(&known) = self.starts.get(&piece) {
+            return known;
+        }
+        let found = self.enter(&self.pieces[piece].clone(), 0);
+        self.starts.insert(piece, found);
+        found
+    }
+
+    /// The state of a run in `state` followed by `piece`, whose left portals are as many as the run's right
+    /// ones; `None` if it is dead.
+    pub fn step(&mut self, state: StateId, piece: usize) -> Option<StateId> {
+        let key = (state, piece as u32);
+        if let Some(&known) = self.steps.get(&key) {
+            return known;
+        }
+        let State { left, right, closed, holes } = &self.states[state.index()];
+        let wide = |labels: &[u16]| labels.iter().map(|&l| u32::from(l)).collect::<Vec<_>>();
+        // χ only carries the holes here, and labels that the goal does not read are not kept.
+        let mut run = Descriptor::new(&wide(left), &wide(right), *closed, 0);
+        run = Descriptor::new(&wide(left), &wide(right), *closed, i64::from(closed + run.open()));
+        let holes = *holes;
+        let found = match self.pieces.get(piece).map(|p| run.join(p)) {
+            Some(Ok(joined)) => self.enter(&joined, holes),
+            _ => None,
+        };
+        self.steps.insert(key, found);
+        found
+    }
+
+    /// The state of `run`, which has `holes` more than its Euler characteristic says.
+    fn enter(&mut self, run: &Descriptor, holes: u32) -> Option<StateId> {
+        let holes = holes + run.holes();
+        if self.goal.holes.is_some_and(|most| holes > most) {
+            return None;
+        }
+        let reads_partition = self.goal.components.is_some()
+            || self.goal.holes.is_some()
+            || (self.goal.closed_pattern && self.shape == Shape::Ring);
+        let keep_left = self.shape == Shape::Ring;
+        let blank = |labels: &[u16]| vec![0u16; labels.len()];
+        let (left, right) = match (reads_partition, keep_left) {
+            (true, true) => (run.left().to_vec(), run.right().to_vec()),
+            // Without the left side, components that reach only it would be lost: they are none, as an open
+            // run begins without portals.
+            (true, false) => (Vec::new(), run.right().to_vec()),
+            (false, _) => (if keep_left { blank(run.left()) } else { Vec::new() }, blank(run.right())),
+        };
+        let open = run.open();
+        if let Some(target) = self.goal.components {
+            // Every open component is going to be a part of at least one more closed one.
+            if run.closed() + u32::from(open > 0) > target {
+                return None;
+            }
+        }
+        let state = State {
+            left,
+            right,
+            closed: if self.goal.components.is_some() { run.closed() } else { 0 },
+            holes: if self.goal.holes.is_some() { holes } else { 0 },
+        };
+        if let Some(&id) = self.ids.get(&state) {
+            return Some(id);
+        }
+        let id = StateId(u32::try_from(self.states.len()).expect("fewer than 2^32 states"));
+        self.states.push(state.clone());
+        self.ids.insert(state, id);
+        Some(id)
+    }
+
+    /// Whether a run in `state` is complete and meets the goal: no portals are open (open runs), or its right
+    /// portals can be glued to its left ones with the goal's topology (rings).
+    pub fn accepts(&self, state: StateId) -> bool {
+        let State { left, right, closed, holes } = &self.states[state.index()];
+        match self.shape {
+            Shape::Open => {
+                right.is_empty()
+                    && self.goal.components.is_none_or(|n| n == *closed)
+                    && self.goal.holes.is_none_or(|n| n == *holes)
+            }
+            Shape::Ring => left.len() == right.len() && self.ring_admitted(left, right, *closed, *holes),
+        }
+    }
+
+    fn ring_admitted(&self, left: &[u16], right: &[u16], closed: u32, holes: u32) -> bool {
+        let wide = |labels: &[u16]| labels.iter().map(|&l| u32::from(l)).collect::<Vec<_>>();
+        let mut run = Descriptor::new(&wide(left), &wide(right), closed, 0);
+        run = Descriptor::new(
+            &wide(left),
+            &wide(right),
+            closed,
+            i64::from(closed + run.open()) - i64::from(holes),
+        );
+        run.close().is_ok_and(|ring| {
+            self.goal.components.is_none_or(|n| n == ring.components)
+                && self.goal.holes.is_none_or(|n| n == ring.holes)
+                && (ring.closed_pattern || !self.goal.closed_pattern)
+        })
+    }
+
+    /// How states at one place compare for this goal.
+    pub fn dominance(&self) -> Dominance {
+        match (self.goal.components, self.goal.holes) {
+            (Some(1), None) => Dominance::Coarser,
+            (None, Some(0)) if !self.goal.closed_pattern => Dominance::Finer,
+            _ => Dominance::Equal,
+        }
+    }
+
+    /// Whether a run in state `a` can be completed in every way in which one in `b` can, so that at no higher
+    /// cost it can stand for it. Both have the same numbers of portals.
+    pub fn dominates(&mut self, a: StateId, b: StateId) -> bool {
+        if a == b {
+            return true;
+        }
+        let (coarse, fine) = match self.dominance() {
+            Dominance::Equal => return false,
+            Dominance::Coarser => (a, b),
+            Dominance::Finer => (b, a),
+        };
+        if let Some(&known) = self.comparisons.get(&(coarse, fine)) {
+            return known;
+        }
+        let found = is_coarser(&self.states[coarse.index()], &self.states[fine.index()]);
+        self.comparisons.insert((coarse, fine), found);
+        found
+    }
+}
+
+/// Whether portals that `fine` connects are connected in `coarse` too, all counters being equal.
+fn is_coarser(coarse: &State, fine: &State) -> bool {
+    if (coarse.closed, coarse.holes) != (fine.closed, fine.holes)
+        || coarse.left.len() != fine.left.len()
+        || coarse.right.len() != fine.right.len()
+    {
+        return false;
+    }
+    let labels = |s: &State| s.left.iter().chain(&s.right).copied().map(usize::from).collect::<Vec<_>>();
+    let (coarse, fine) = (labels(coarse), labels(fine));
+    let mut image = vec![usize::MAX; fine.len()];
+    fine.iter().zip(&coarse).all(|(&f, &c)| {
+        let unseen = image[f] == usize::MAX;
+        if unseen {
+            image[f] = c;
+        }
+        image[f] == c
+    })
+}
