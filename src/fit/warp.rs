@@ -1,0 +1,223 @@
+//! The strip warp: bends a piece without being able to change its topology.
+//!
+//! A piece lies in the strip 0 ≤ x ≤ w. On each side the endpoints have to move to targets in the same order,
+//! so there is an increasing function of y through them: d_L on the left and d_R on the right. Blending the
+//! two, φ(x, y) = (1 − s) d_L(y) + s d_R(y) with s = smoothstep(x / w), gives for every x an increasing
+//! function of y, so (x, y) → (x, φ) is a homeomorphism of the strip whatever is drawn in it.
+//!
+//! To match tangents, a term a(x) c(y) is added at each side, where a(0) = 0, a'(0) = 1 and a vanishes
+//! beyond a reach ρ, and c interpolates the change of slope that each endpoint needs. As |a| ≤ 4/27 ρ, choosing
+//! ρ so that 4/27 ρ max|c'| is less than the least ∂φ/∂y keeps φ increasing: the proof still holds. Excluded:
+//! slopes steeper than [`STEEPEST`], which no finite reach could turn.
+
+use glam::DVec2;
+
+use super::interpolant::Monotone;
+use crate::pieces::Endpoint;
+
+/// Where the endpoints of one side have to go, top to bottom.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SideTarget {
+    /// The height to reach, in millimetres above the middle of the band.
+    pub y_mm: f64,
+    /// The unit tangent to have there, pointing right.
+    pub tangent: DVec2,
+}
+
+/// A deformation of one piece that takes its endpoints to their targets.
+pub trait Stitch {
+    /// The image of a point of the piece; x in 0..=width, and both in millimetres.
+    fn map(&self, p: DVec2) -> DVec2;
+}
+
+/// Slopes are matched up to this steepness (76 degrees).
+const STEEPEST: f64 = 4.0;
+/// The part of the least ∂φ/∂y that the tangent terms may use up.
+const SHARE: f64 = 0.7;
+/// The greatest value of t(1 − t)² on 0..1.
+const BUMP_MAX: f64 = 4.0 / 27.0;
+/// The tangent term reaches at most this part of the piece, so that both sides' terms never meet.
+const MAX_REACH: f64 = 0.5;
+/// Beyond the outermost endpoints the change of slope fades out over this many times the reach.
+const FADE: f64 = 1.0;
+
+/// The warp of one piece.
+#[derive(Debug, Clone)]
+pub struct StripWarp {
+    width_mm: f64,
+    left: Side,
+    right: Side,
+}
+
+#[derive(Debug, Clone)]
+struct Side {
+    heights: Monotone,
+    slopes: Monotone,
+    /// How far into the piece the slopes are changed, in millimetres; 0 for not at all.
+    reach_mm: f64,
+}
+
+impl StripWarp {
+    /// The warp of a strip of `width_mm` whose sides' endpoints go to the targets. A side without endpoints
+    /// is moved by `offset_mm`.
+    pub fn new(
+        width_mm: f64,
+        (left, left_targets): (&[Endpoint], &[SideTarget]),
+        (right, right_targets): (&[Endpoint], &[SideTarget]),
+        offset_mm: f64,
+    ) -> Self {
+        let heights = |ends: &[Endpoint], targets: &[SideTarget]| {
+            let mut points: Vec<(f64, f64)> =
+                ends.iter().zip(targets).map(|(e, t)| (e.y_mm, t.y_mm)).collect();
+            points.reverse();
+            match points[..] {
+                [] => points.push((0.0, offset_mm)),
+                [bottom, above, ..] => {
+                    // Beyond the outermost portals the warp eases into a plain shift.
+                    let (below, top) = (points[points.len() - 2], points[points.len() - 1]);
+                    let ease = (above.0 - bottom.0, top.0 - below.0);
+                    points.insert(0, (bottom.0 - ease.0, bottom.1 - ease.0));
+                    points.push((top.0 + ease.1, top.1 + ease.1));
+                }
+                [_] => unreachable!("a portal has two endpoints"),
+            }
+            Monotone::new(&points, 1.0)
+        };
+        let (left_heights, right_heights) = (heights(left, left_targets), heights(right, right_targets));
+        let least = left_heights.slope_range().0.min(right_heights.slope_range().0);
+        let most_reach = MAX_REACH * width_mm;
+        Self {
+            width_mm,
+            left: Side::new(left_heights, left, left_targets, most_reach, least),
+            right: Side::new(right_heights, right, right_targets, most_reach, least),
+        }
+    }
+}
+
+impl Side {
+    fn new(
+        heights: Monotone,
+        ends: &[Endpoint],
+        targets: &[SideTarget],
+        most_reach: f64,
+        least: f64,
+    ) -> Self {
+        let n = ends.len();
+        let clamp = |slope: f64| slope.clamp(-STEEPEST, STEEPEST);
+        let mut changes: Vec<(f64, f64)> = ends
+            .iter()
+            .zip(targets)
+            .enumerate()
+            .map(|(k, (end, target))| {
+                let wanted = clamp(target.tangent.y / target.tangent.x);
+                let given = clamp(end.slope() * heights.slope_at(n - k));
+                (end.y_mm, wanted - given)
+            })
+            .collect();
+        changes.reverse();
+        if changes.iter().all(|c| c.1.abs() < 1e-9) {
+            return Self { heights, slopes: Monotone::new(&[], 0.0), reach_mm: 0.0 };
+        }
+        // The fade depends on the reach and the reach on the steepness of the fade: the shorter, the steeper,
+        // but their product settles.
+        let mut reach_mm = most_reach;
+        let mut slopes = faded(&changes, reach_mm);
+        for _ in 0..40 {
+            let (low, high) = slopes.slope_range();
+            if BUMP_MAX * reach_mm * low.abs().max(high.abs()) <= SHARE * least {
+                return Self { heights, slopes, reach_mm };
+            }
+            reach_mm *= 0.8;
+            slopes = faded(&changes, most_reach);
+        }
+        Self { heights, slopes: Monotone::new(&[], 0.0), reach_mm: 0.0 }
+    }
+
+    /// a(x)·c(y) at a distance from this side, for slopes that are measured away from it.
+    fn bump(&self, distance: f64, y: f64) -> f64 {
+        if distance >= self.reach_mm {
+            return 0.0;
+        }
+        let t = distance / self.reach_mm;
+        self.reach_mm * t * (1.0 - t) * (1.0 - t) * self.slopes.value(y)
+    }
+}
+
+/// The changes of slope with points added beyond the ends where they have faded to nothing.
+fn faded(changes: &[(f64, f64)], reach_mm: f64) -> Monotone {
+    let (first, last) = (changes[0].0, changes[changes.len() - 1].0);
+    let fade = FADE * reach_mm;
+    let mut points = vec![(first - fade, 0.0)];
+    points.extend_from_slice(changes);
+    points.push((last + fade, 0.0));
+    Monotone::new(&points, 0.0)
+}
+
+impl Stitch for StripWarp {
+    fn map(&self, p: DVec2) -> DVec2 {
+        let t = (p.x / self.width_mm).clamp(0.0, 1.0);
+        let s = t * t * (3.0 - 2.0 * t);
+        let blended = (1.0 - s) * self.left.heights.value(p.y) + s * self.right.heights.value(p.y);
+        let tangents = self.left.bump(p.x, p.y) - self.right.bump(self.width_mm - p.x, p.y);
+        DVec2::new(p.x, blended + tangents)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    type Ends = (Vec<Endpoint>, Vec<SideTarget>);
+
+    fn ends() -> impl Strategy<Value = Ends> {
+        let end = (0.05f64..2.0, 0.05f64..2.0, -1.3f64..1.3, -1.3f64..1.3);
+        (0usize..5, -3.0f64..3.0).prop_flat_map(move |(portals, shift)| {
+            prop::collection::vec(end.clone(), 2 * portals).prop_map(move |steps| {
+                let (mut from, mut to) = (3.0, 3.0 + shift);
+                let mut found = (Vec::new(), Vec::new());
+                for (a, b, before, after) in steps {
+                    from -= a;
+                    to -= b;
+                    found.0.push(Endpoint { y_mm: from, tangent: DVec2::from_angle(before) });
+                    found.1.push(SideTarget { y_mm: to, tangent: DVec2::from_angle(after) });
+                }
+                found
+            })
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn vertical_lines_stay_in_order(left in ends(), right in ends(), width in 0.2f64..20.0, x in 0.0f64..1.0) {
+            let warp = StripWarp::new(width, (&left.0, &left.1), (&right.0, &right.1), 0.5);
+            let mut before = f64::NEG_INFINITY;
+            for i in 0..=2000 {
+                let y = -15.0 + 0.015 * f64::from(i);
+                let image = warp.map(DVec2::new(x * width, y));
+                prop_assert!(image.y > before, "at y = {y}");
+                before = image.y;
+            }
+        }
+
+        #[test]
+        fn endpoints_and_slopes_arrive(left in ends(), right in ends()) {
+            let width = 10.0;
+            let warp = StripWarp::new(width, (&left.0, &left.1), (&right.0, &right.1), 0.0);
+            for (x, inward, (ends, targets)) in [(0.0, 1.0, &left), (width, -1.0, &right)] {
+                let reach = if x == 0.0 { warp.left.reach_mm } else { warp.right.reach_mm };
+                for (end, target) in ends.iter().zip(targets) {
+                    let at = DVec2::new(x, end.y_mm);
+                    prop_assert!((warp.map(at).y - target.y_mm).abs() < 1e-9);
+                    if end.slope().abs() < 3.0 && reach > 1e-3 {
+                        let step = DVec2::new(1.0, end.slope()) * inward * reach * 1e-5;
+                        let moved = warp.map(at + step) - warp.map(at);
+                        let wanted = (target.tangent.y / target.tangent.x).clamp(-STEEPEST, STEEPEST);
+                        prop_assert!((moved.y / moved.x - wanted).abs() < 0.02 * (1.0 + wanted.abs()),
+                            "{} {}", moved.y / moved.x, wanted);
+                    }
+                }
+            }
+        }
+    }
+}

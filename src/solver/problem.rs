@@ -1,0 +1,96 @@
+//! What is asked of the solver, and what it answers.
+
+use std::ops::RangeInclusive;
+
+use thiserror::Error;
+
+use super::variety::Variety;
+use crate::topology::{Descriptor, Shape};
+
+/// A cost in millionths, so that sums are exact and equal costs compare equal.
+pub type Cost = u64;
+
+/// A join of a piece to a successor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Step {
+    /// The successor.
+    pub to: usize,
+    /// What the join costs.
+    pub cost: Cost,
+    /// By how much it raises the run, in units of drift.
+    pub rise: i32,
+}
+
+/// A search problem in whole numbers.
+#[derive(Debug, Clone)]
+pub struct Problem<'a> {
+    /// Whether the run has two ends or closes on itself.
+    pub shape: Shape,
+    /// The descriptor of each piece.
+    pub descriptors: &'a [Descriptor],
+    /// The width of each piece in bins, at least 1.
+    pub widths: Vec<u32>,
+    /// The joins that may follow each piece. Portal numbers match.
+    pub steps: Vec<Vec<Step>>,
+    /// What it costs an open run to begin with each piece; `None` where it cannot (portals on the left).
+    pub begin: Vec<Option<Cost>>,
+    /// What it costs an open run to end with each piece; `None` where it cannot (portals on the right).
+    pub end: Vec<Option<Cost>>,
+    /// The total widths that are accepted, in bins.
+    pub window: RangeInclusive<u32>,
+    /// The largest accumulated rise, up or down, at any piece (the drift stays inside the band, Zhou 2014
+    /// §3.6.2).
+    pub drift_limit: i32,
+    /// The penalty on repetition, if wanted. It depends on the whole run, so the answer is then the best one
+    /// among the runs that the search keeps, as in Zhou 2014 §3.7, and not proven optimal.
+    pub variety: Option<Variety>,
+    /// The most labels that the search may hold.
+    pub label_limit: usize,
+}
+
+/// A sequence that meets all constraints.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Solution {
+    /// The pieces in order.
+    pub sequence: Vec<usize>,
+    /// The cost of its joins (with the closing one for a ring), begin and end; without the variety term.
+    pub cost: Cost,
+    /// Whether no cheaper sequence meets the constraints.
+    pub optimal: bool,
+    /// Labels that were made.
+    pub labels: usize,
+    /// States of the automaton that were met.
+    pub states: usize,
+}
+
+/// Why there is no solution.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum Unsolved {
+    /// No sequence meets the constraints.
+    #[error("no sequence of pieces meets the constraints")]
+    Infeasible,
+    /// The search was given up.
+    #[error("the search passed {labels} labels")]
+    TooLarge {
+        /// Labels made until then.
+        labels: usize,
+    },
+}
+
+impl Problem<'_> {
+    /// The number of pieces.
+    pub fn pieces(&self) -> usize {
+        self.widths.len()
+    }
+
+    /// The cost of a sequence by the problem's own tables; `None` if a join is not in them.
+    pub fn cost_of(&self, sequence: &[usize]) -> Option<Cost> {
+        let step = |a: usize, b: usize| self.steps[a].iter().find(|s| s.to == b).map(|s| s.cost);
+        let (&first, &last) = (sequence.first()?, sequence.last()?);
+        let ends = match self.shape {
+            Shape::Open => self.begin[first]? + self.end[last]?,
+            Shape::Ring => step(last, first)?,
+        };
+        sequence.windows(2).map(|w| step(w[0], w[1])).sum::<Option<Cost>>().map(|c| c + ends)
+    }
+}

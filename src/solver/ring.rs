@@ -1,0 +1,71 @@
+//! Rings, opened at their narrowest cut.
+//!
+//! A ring is a cyclic sequence; where it is opened does not matter, so it is opened at a cut with the fewest
+//! portals, m. Pieces with fewer than m portals on a side then cannot occur, and with m = 1 the left labels
+//! say next to nothing. For each m, the first piece runs over the pieces with m portals on the left; once the
+//! best ring through a first piece is known, that piece is removed, as every ring through it has been seen.
+//! What is left is abandoned as soon as its cheapest conceivable ring costs no less than the best found.
+
+use super::bound::{Bound, NEVER};
+use super::problem::{Cost, Problem, Solution, Unsolved};
+use super::search::{Task, solve_task};
+use crate::topology::Automaton;
+
+/// The cheapest ring.
+pub(super) fn solve_ring(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
+    let left = |p: usize| problem.descriptors[p].left().len();
+    let right = |p: usize| problem.descriptors[p].right().len();
+    let mut portals: Vec<usize> = (0..problem.pieces()).map(left).collect();
+    portals.sort_unstable();
+    portals.dedup();
+    let mut best: Option<Solution> = None;
+    let mut labels = 0;
+    for m in portals {
+        let mut allowed: Vec<bool> = (0..problem.pieces()).map(|p| left(p) >= m && right(p) >= m).collect();
+        let mut firsts: Vec<usize> = (0..problem.pieces()).filter(|&p| allowed[p] && left(p) == m).collect();
+        while let Some((first, estimate)) = most_promising(problem, &firsts, &allowed) {
+            let ceiling = best.as_ref().map_or(NEVER, |b| b.cost);
+            if estimate >= ceiling {
+                break;
+            }
+            let stop = closing_costs(problem, &[first], &allowed);
+            let bound = Bound::new(problem, &stop, &allowed);
+            if bound.at(problem.widths[first], first) < ceiling {
+                let task = Task { starts: vec![(first, 0)], stop: &stop, bound: &bound, ceiling };
+                match solve_task(problem, automaton, &task) {
+                    Ok(found) => {
+                        labels += found.labels;
+                        best = Some(found);
+                    }
+                    Err(Unsolved::Infeasible) => {}
+                    Err(too_large) => return Err(too_large),
+                }
+            }
+            allowed[first] = false;
+            firsts.retain(|&p| p != first);
+        }
+    }
+    best.map(|b| Solution { labels, states: automaton.len(), ..b }).ok_or(Unsolved::Infeasible)
+}
+
+/// What closing a ring after each piece costs, when it began with the cheapest of `firsts`.
+fn closing_costs(problem: &Problem<'_>, firsts: &[usize], allowed: &[bool]) -> Vec<Option<Cost>> {
+    (0..problem.pieces())
+        .map(|p| {
+            let closing = problem.steps[p].iter().filter(|s| firsts.contains(&s.to));
+            closing.map(|s| s.cost).min().filter(|_| allowed[p])
+        })
+        .collect()
+}
+
+/// The first piece whose cheapest conceivable ring is cheapest, with that cost: a path of the wanted length
+/// from it to a join with any first piece.
+fn most_promising(problem: &Problem<'_>, firsts: &[usize], allowed: &[bool]) -> Option<(usize, Cost)> {
+    if firsts.is_empty() {
+        return None;
+    }
+    let stop = closing_costs(problem, firsts, allowed);
+    let bound = Bound::new(problem, &stop, allowed);
+    let estimates = firsts.iter().map(|&f| (f, bound.at(problem.widths[f], f)));
+    estimates.filter(|&(_, estimate)| estimate != NEVER).min_by_key(|&(f, estimate)| (estimate, f))
+}
