@@ -205,11 +205,13 @@ mod tests {
             let width = 10.0;
             let warp = StripWarp::new(width, (&left.0, &left.1), (&right.0, &right.1), 0.0);
             for (x, inward, (ends, targets)) in [(0.0, 1.0, &left), (width, -1.0, &right)] {
-                let reach = if x == 0.0 { warp.left.reach_mm } else { warp.right.reach_mm };
-                for (end, target) in ends.iter().zip(targets) {
+                let side = if x == 0.0 { &warp.left } else { &warp.right };
+                let reach = side.reach_mm;
+                for (k, (end, target)) in ends.iter().zip(targets).enumerate() {
                     let at = DVec2::new(x, end.y_mm);
                     prop_assert!((warp.map(at).y - target.y_mm).abs() < 1e-9);
-                    if end.slope().abs() < 3.0 && reach > 1e-3 {
+                    let given = end.slope() * side.heights.slope_at(ends.len() - k);
+                    if given.abs() < STEEPEST && reach > 1e-3 {
                         let step = DVec2::new(1.0, end.slope()) * inward * reach * 1e-5;
                         let moved = warp.map(at + step) - warp.map(at);
                         let wanted = (target.tangent.y / target.tangent.x).clamp(-STEEPEST, STEEPEST);
