@@ -17,6 +17,9 @@ pub struct CostWeights {
     /// which then favours short cycles repeated many times. Positions are weighed in units of 1/60 of the
     /// exemplar's longer side, so that a cost does not depend on the size of the drawing.
     pub jump: f64,
+    /// The cost of a join that moves the run up or down by the exemplar's height; it grows with the square. The
+    /// paper has no such term and leaves bands that climb to the fit; 0 is the paper.
+    pub rise: f64,
     /// How many successors of each piece are kept: the cheapest, and always the exemplar's own next piece.
     pub successors: usize,
 }
@@ -35,7 +38,7 @@ pub struct CostWeightsError {
 
 impl Default for CostWeights {
     fn default() -> Self {
-        Self { alpha: 0.8, jump: 1.0, successors: 16 }
+        Self { alpha: 0.8, jump: 1.0, rise: 50.0, successors: 16 }
     }
 }
 
@@ -60,7 +63,7 @@ impl CostWeights {
 pub struct Join {
     /// The successor.
     pub to: usize,
-    /// D(i, j) of Zhou 2014 §3.6.1, and λ if this is a jump.
+    /// D(i, j) of Zhou 2014 §3.6.1, what the rise costs, and λ if this is a jump.
     pub cost: f64,
     /// The vertical offset τ that aligns the successor best, in millimetres: added to the offset of the piece
     /// it gives the successor's.
@@ -89,7 +92,8 @@ impl Catalogue {
         let (low, high) = region.bounds_mm().unwrap_or_default();
         let size = high - low;
         let unit_mm = size.max_element() / REFERENCE_MM;
-        let joins = (0..pieces.len()).map(|from| joins_from(&pieces, from, unit_mm, weights)).collect();
+        let scale = Scale { unit_mm, height_mm: size.y };
+        let joins = (0..pieces.len()).map(|from| joins_from(&pieces, from, scale, weights)).collect();
         let descriptors = pieces.iter().map(|p| p.descriptor.clone()).collect();
         Self { pieces, descriptors, joins, width_mm: size.x, height_mm: size.y }
     }
@@ -125,7 +129,16 @@ impl Catalogue {
     }
 }
 
-fn joins_from(pieces: &[Piece], from: usize, unit_mm: f64, weights: &CostWeights) -> Vec<Join> {
+/// What positions are measured in.
+#[derive(Clone, Copy)]
+struct Scale {
+    /// 1/60 of the exemplar's longer side.
+    unit_mm: f64,
+    /// The exemplar's height.
+    height_mm: f64,
+}
+
+fn joins_from(pieces: &[Piece], from: usize, scale: Scale, weights: &CostWeights) -> Vec<Join> {
     let right = &pieces[from].right;
     let mut joins: Vec<Join> = (0..pieces.len())
         // A piece after itself is the shortest of the degenerate cycles; slicing by events never allows it
@@ -133,9 +146,10 @@ fn joins_from(pieces: &[Piece], from: usize, unit_mm: f64, weights: &CostWeights
         .filter(|&to| to != from && pieces[to].left.len() == right.len())
         .map(|to| {
             let is_natural = to == from + 1;
-            let (cost, rise_mm) = join_cost(right, &pieces[to].left, unit_mm, weights.alpha);
+            let (cost, rise_mm) = join_cost(right, &pieces[to].left, scale.unit_mm, weights.alpha);
             let jump = if is_natural { 0.0 } else { weights.jump };
-            Join { to, cost: cost + jump, rise_mm, is_natural }
+            let rise = weights.rise * (rise_mm / scale.height_mm).powi(2);
+            Join { to, cost: cost + jump + rise, rise_mm, is_natural }
         })
         .collect();
     joins.sort_by(|a, b| a.cost.total_cmp(&b.cost).then(a.to.cmp(&b.to)));

@@ -69,4 +69,10 @@ impl Piece {
     pub fn right_portals(&self) -> usize {
         self.right.len() / 2
     }
+
+    /// The lowest and the highest y of the piece's ink, above the middle of the exemplar; (0, 0) without ink.
+    pub fn height_range_mm(&self) -> (f64, f64) {
+        let points = self.chains.iter().map(|c| &c.points).chain(&self.loops).flatten();
+        points.map(|p| (p.y, p.y)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default()
+    }
 }

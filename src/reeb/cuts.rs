@@ -110,6 +110,9 @@ pub enum SlicingError {
 
 /// Places tried between two events. More find a slightly better cut; fewer miss the straight part of a curl.
 const CANDIDATES: i64 = 24;
+/// No cut where a contour runs along it more steeply than this (cosine of 78 degrees): a strand that is cut
+/// along its length cannot be joined to another without a kink.
+const LEAST_SQUARENESS: f64 = 0.2;
 /// Portals closer than this part of the exemplar's height are not told apart, and no cut is placed there.
 const SEPARATION: f64 = 1e-6;
 
@@ -237,6 +240,9 @@ fn best_cuts(sections: &CrossSections<'_>, intervals: &[Interval], separation: f
 fn score(crossings: &[Crossing]) -> f64 {
     if crossings.is_empty() {
         return f64::MAX;
+    }
+    if crossings.iter().any(|c| c.tangent.x < LEAST_SQUARENESS) {
+        return 0.0;
     }
     let narrowest = crossings.windows(2).map(|w| w[0].y_mm - w[1].y_mm).fold(f64::INFINITY, f64::min);
     let squareness = crossings.iter().map(|c| c.tangent.x).sum::<f64>() / crossings.len() as f64;

@@ -7,12 +7,13 @@
 //! run backwards, is exact for everything but the topology. Rings are opened at their narrowest cut.
 //!
 //! What this room promises to the next: a [`Solution`] meets every constraint of its [`Problem`], and no
-//! other sequence that does costs less unless `optimal` says otherwise. Coordinates are not known here.
+//! other sequence that does costs less by more than its `gap`. Coordinates are not known here.
 //!
 //! [`Automaton`]: crate::topology::Automaton
 
 mod bound;
 mod explain;
+mod labels;
 mod problem;
 mod ring;
 mod search;

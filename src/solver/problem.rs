@@ -38,8 +38,7 @@ pub struct Problem<'a> {
     pub end: Vec<Option<Cost>>,
     /// The total widths that are accepted, in bins.
     pub window: RangeInclusive<u32>,
-    /// The largest accumulated rise, up or down, at any piece (the drift stays inside the band, Zhou 2014
-    /// §3.6.2).
+    /// The largest accumulated rise, up or down, at any piece (δ stays inside the band, Zhou 2014 §3.5).
     pub drift_limit: i32,
     /// The penalty on repetition, if wanted. It depends on the whole run, so the answer is then the best one
     /// among the runs that the search keeps, as in Zhou 2014 §3.7, and not proven optimal.
@@ -55,8 +54,8 @@ pub struct Solution {
     pub sequence: Vec<usize>,
     /// The cost of its joins (with the closing one for a ring), begin and end; without the variety term.
     pub cost: Cost,
-    /// Whether no cheaper sequence meets the constraints.
-    pub optimal: bool,
+    /// How much less a sequence that meets the constraints could cost at most; 0 when none does.
+    pub gap: Cost,
     /// Labels that were made.
     pub labels: usize,
     /// States of the automaton that were met.

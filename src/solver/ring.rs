@@ -19,7 +19,7 @@ pub(super) fn solve_ring(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -
     portals.sort_unstable();
     portals.dedup();
     let mut best: Option<Solution> = None;
-    let mut labels = 0;
+    let (mut labels, mut floor) = (0, NEVER);
     for m in portals {
         let mut allowed: Vec<bool> = (0..problem.pieces()).map(|p| left(p) >= m && right(p) >= m).collect();
         let mut firsts: Vec<usize> = (0..problem.pieces()).filter(|&p| allowed[p] && left(p) == m).collect();
@@ -35,6 +35,7 @@ pub(super) fn solve_ring(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -
                 match solve_task(problem, automaton, &task) {
                     Ok(found) => {
                         labels += found.labels;
+                        floor = floor.min(found.cost - found.gap);
                         best = Some(found);
                     }
                     Err(Unsolved::Infeasible) => {}
@@ -45,7 +46,9 @@ pub(super) fn solve_ring(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -
             firsts.retain(|&p| p != first);
         }
     }
-    best.map(|b| Solution { labels, states: automaton.len(), ..b }).ok_or(Unsolved::Infeasible)
+    let best = best.ok_or(Unsolved::Infeasible)?;
+    let gap = best.cost.saturating_sub(floor);
+    Ok(Solution { labels, gap, states: automaton.len(), ..best })
 }
 
 /// What closing a ring after each piece costs, when it began with the cheapest of `firsts`.

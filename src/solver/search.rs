@@ -1,30 +1,15 @@
-//! A* over labels, for runs from given first pieces to given last ones.
+//! The search over labels, for runs from given first pieces to given last ones.
 //!
-//! Labels at one length and piece have the same estimate, so they are settled in the order of their cost, and
-//! a label is dropped when one that is no dearer can stand for it (equal state, or dominance). Drift is not
-//! part of what a label is known by at first: a run that drifts out of the band is dropped, and only if that
-//! ever happened is the search run again with the drift as a part of the state, which is exact.
+//! It runs in up to three rounds. The first is A* without regard to where a run has drifted to, except that a
+//! run that leaves the band is dropped; if none ever was, its answer is the optimum. Otherwise a second round
+//! takes the drift into the state, looking only for what is cheaper. Either gives up at a number of labels;
+//! then a beam along the length finds a sequence if it can, and the least estimate that A* had not yet
+//! settled says how far from the optimum that may be.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-
-use rustc_hash::FxHashMap;
-
-use super::bound::{Bound, NEVER};
+use super::bound::Bound;
+use super::labels::{Label, Labels, Search};
 use super::problem::{Cost, Problem, Solution, Unsolved};
-use super::variety::extend;
-use crate::topology::{Automaton, StateId};
-
-/// A partial run.
-struct Label {
-    cost: Cost,
-    length: u32,
-    piece: u32,
-    state: StateId,
-    drift: i32,
-    /// The label of the run without its last piece, or itself for the first.
-    parent: u32,
-}
+use crate::topology::Automaton;
 
 /// Where runs begin and what they must look like.
 pub(super) struct Task<'t> {
@@ -38,189 +23,127 @@ pub(super) struct Task<'t> {
     pub(super) ceiling: Cost,
 }
 
+/// States of the automaton at which A* gives up: with so many partitions of the portals, dominance has stopped
+/// to bite, and a beam finds a good sequence long before A* would prove one.
+const STATE_LIMIT: usize = 20_000;
+/// Labels kept at each length by the beam; doubled until a sequence is found.
+const BEAMS: [usize; 3] = [128, 1024, 8192];
+
 /// The cheapest open run.
 pub(super) fn solve_open(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
     let bound = Bound::new(problem, &problem.end, &vec![true; problem.pieces()]);
     let starts =
         problem.begin.iter().enumerate().filter_map(|(piece, cost)| cost.map(|c| (piece, c))).collect();
-    let task = Task { starts, stop: &problem.end, bound: &bound, ceiling: NEVER };
+    let task = Task { starts, stop: &problem.end, bound: &bound, ceiling: super::bound::NEVER };
     solve_task(problem, automaton, &task)
 }
 
-/// The cheapest run for `task`, exact in the drift.
+/// The cheapest run for `task`.
 pub(super) fn solve_task(
     problem: &Problem<'_>,
     automaton: &mut Automaton<'_>,
     task: &Task<'_>,
 ) -> Result<Solution, Unsolved> {
-    let mut search = Search::new(problem, task, false);
-    let found = search.run(automaton);
-    if !search.drifted_out || matches!(found, Err(Unsolved::TooLarge { .. })) {
-        return found;
-    }
-    let first_labels = search.labels.len();
-    let mut exact = Search::new(problem, task, true);
-    match (exact.run(automaton), found) {
-        (Ok(best), _) => Ok(Solution { labels: best.labels + first_labels, ..best }),
-        // A valid answer whose optimality could not be shown within the limit.
-        (Err(Unsolved::TooLarge { .. }), Ok(valid)) => Ok(Solution { optimal: false, ..valid }),
-        (Err(why), _) => Err(why),
-    }
-}
-
-struct Search<'s> {
-    problem: &'s Problem<'s>,
-    task: &'s Task<'s>,
-    by_drift: bool,
-    drifted_out: bool,
-    labels: Vec<Label>,
-    correlations: Vec<Vec<f32>>,
-    /// Labels met at each length and piece.
-    met: FxHashMap<(u32, u32), Vec<u32>>,
-    /// By estimate of the whole cost; among equals the longest run first, then the oldest.
-    open: BinaryHeap<(Reverse<Cost>, u32, Reverse<u32>)>,
-}
-
-impl<'s> Search<'s> {
-    fn new(problem: &'s Problem<'s>, task: &'s Task<'s>, by_drift: bool) -> Self {
-        Self {
-            problem,
-            task,
-            by_drift,
-            drifted_out: false,
-            labels: Vec::new(),
-            correlations: Vec::new(),
-            met: FxHashMap::default(),
-            open: BinaryHeap::new(),
+    let mut first = Search::new(problem, task, false);
+    let found = best_first(&mut first, automaton);
+    let labels = first.labels.len();
+    let (found, floor) = match found {
+        Ok(found) if !first.drifted_out => {
+            return found.map(|at| first.solution(automaton, at, 0)).ok_or(Unsolved::Infeasible);
+        }
+        Ok(found) => (found.map(|at| first.solution(automaton, at, 0)), 0),
+        Err(floor) => (None, floor),
+    };
+    drop(first);
+    if floor == 0 {
+        let ceiling = found.as_ref().map_or(task.ceiling, |f| f.cost);
+        let cheaper = Task { starts: task.starts.clone(), ceiling, ..*task };
+        let mut second = Search::new(problem, &cheaper, true);
+        match best_first(&mut second, automaton) {
+            Ok(None) => return found.ok_or(Unsolved::Infeasible),
+            Ok(Some(at)) => return Ok(second.solution(automaton, at, 0)),
+            Err(floor) => {
+                if let Some(found) = found {
+                    return Ok(Solution { gap: found.cost.saturating_sub(floor), ..found });
+                }
+            }
         }
     }
+    BEAMS
+        .iter()
+        .find_map(|&width| {
+            let mut narrow = Search::new(problem, task, false);
+            let at = beam(&mut narrow, automaton, width)?;
+            let solution = narrow.solution(automaton, at, 0);
+            Some(Solution { gap: solution.cost.saturating_sub(floor), ..solution })
+        })
+        .ok_or(Unsolved::TooLarge { labels })
+}
 
-    fn run(&mut self, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
-        for &(piece, cost) in &self.task.starts {
-            if let Some(state) = automaton.start(piece) {
-                let length = self.problem.widths[piece];
-                let parent = self.labels.len() as u32;
-                self.meet(automaton, Label { cost, length, piece: piece as u32, state, drift: 0, parent });
+/// A*: the cheapest complete label, none if there is none, or the least unsettled estimate when the labels
+/// ran out.
+fn best_first(search: &mut Search<'_>, automaton: &mut Automaton<'_>) -> Result<Option<u32>, Cost> {
+    search.start(automaton);
+    let mut best: Option<(Cost, u32)> = None;
+    while let Some((estimate, at)) = search.pop() {
+        if best.is_some_and(|(cost, _)| cost <= estimate) {
+            break;
+        }
+        if search.labels.len() > search.problem.label_limit || automaton.len() > STATE_LIMIT {
+            return Err(estimate);
+        }
+        if search.labels.is_superseded(at) {
+            continue;
+        }
+        if let Some(total) = search.total(automaton, at) {
+            if best.is_none_or(|(known, _)| total < known) {
+                best = Some((total, at));
             }
         }
-        let mut best: Option<(Cost, u32)> = None;
-        while let Some((Reverse(estimate), _, Reverse(at))) = self.open.pop() {
-            if best.is_some_and(|(cost, _)| cost <= estimate) {
-                break;
-            }
-            if self.labels.len() > self.problem.label_limit {
-                return Err(Unsolved::TooLarge { labels: self.labels.len() });
-            }
-            let Label { cost, length, piece, state, drift, .. } = self.labels[at as usize];
-            if self.is_superseded(automaton, at) {
+        search.extend(automaton, at);
+    }
+    Ok(best.map(|(_, at)| at))
+}
+
+/// The cheapest complete label among runs that at each length were among the `width` most promising.
+fn beam(search: &mut Search<'_>, automaton: &mut Automaton<'_>, width: usize) -> Option<u32> {
+    search.start(automaton);
+    let mut best: Option<(Cost, u32)> = None;
+    let mut layers: Vec<Vec<(Cost, u32)>> = vec![Vec::new(); *search.problem.window.end() as usize + 1];
+    for length in 0..layers.len() {
+        // Runs only grow, so whatever reaches this length has been found.
+        while let Some((estimate, at)) = search.pop() {
+            let Label { length, .. } = *search.labels.get(at);
+            layers[length as usize].push((estimate, at));
+        }
+        let mut layer = std::mem::take(&mut layers[length]);
+        layer.sort_unstable();
+        layer.truncate(width);
+        for (_, at) in layer {
+            if search.labels.is_superseded(at) {
                 continue;
             }
-            if self.problem.window.contains(&length) && automaton.accepts(state) {
-                if let Some(stop) = self.task.stop[piece as usize] {
-                    let total = cost + stop + self.penalty(at);
-                    if total < self.task.ceiling && best.is_none_or(|(known, _)| total < known) {
-                        best = Some((total, at));
-                    }
+            if let Some(total) = search.total(automaton, at) {
+                if best.is_none_or(|(known, _)| total < known) {
+                    best = Some((total, at));
                 }
             }
-            let problem = self.problem;
-            for step in &problem.steps[piece as usize] {
-                let length = length + problem.widths[step.to];
-                if self.task.bound.at(length, step.to) == NEVER {
-                    continue;
-                }
-                let drift = drift + step.rise;
-                if drift.abs() > problem.drift_limit {
-                    self.drifted_out = true;
-                    continue;
-                }
-                if let Some(state) = automaton.step(state, step.to) {
-                    let cost = cost + step.cost;
-                    self.meet(
-                        automaton,
-                        Label { cost, length, piece: step.to as u32, state, drift, parent: at },
-                    );
-                }
-            }
+            search.extend(automaton, at);
         }
-        let Some((_, at)) = best else { return Err(Unsolved::Infeasible) };
-        let sequence = self.sequence(at);
-        let cost =
-            self.labels[at as usize].cost + self.task.stop[*sequence.last().unwrap_or(&0)].unwrap_or(0);
-        Ok(Solution {
+    }
+    best.map(|(_, at)| at)
+}
+
+impl Search<'_> {
+    fn solution(&self, automaton: &Automaton<'_>, at: u32, gap: Cost) -> Solution {
+        let sequence = Labels::sequence(&self.labels, at);
+        let stop = sequence.last().and_then(|&last| self.task.stop[last]).unwrap_or(0);
+        Solution {
+            cost: self.labels.get(at).cost + stop,
             sequence,
-            cost,
-            optimal: self.problem.variety.is_none(),
+            gap,
             labels: self.labels.len(),
             states: automaton.len(),
-        })
-    }
-
-    /// Takes up a label unless one that was met before can stand for it.
-    fn meet(&mut self, automaton: &mut Automaton<'_>, label: Label) {
-        let rest = self.task.bound.at(label.length, label.piece as usize);
-        let at = self.labels.len() as u32;
-        let mut correlations = Vec::new();
-        let mut penalty = 0;
-        if let Some(variety) = self.problem.variety {
-            if label.parent != at {
-                let before = &self.correlations[label.parent as usize];
-                correlations = extend(before, label.piece as usize, self.backwards(label.parent));
-            }
-            penalty = variety.penalty(&correlations);
         }
-        let estimate = label.cost.saturating_add(rest).saturating_add(penalty);
-        if rest == NEVER || estimate >= self.task.ceiling {
-            return;
-        }
-        let met = self.met.entry((label.length, label.piece)).or_default();
-        for &other in met.iter() {
-            let other = &self.labels[other as usize];
-            if other.cost <= label.cost
-                && (!self.by_drift || other.drift == label.drift)
-                && automaton.dominates(other.state, label.state)
-            {
-                return;
-            }
-        }
-        met.push(at);
-        self.open.push((Reverse(estimate), label.length, Reverse(at)));
-        self.labels.push(label);
-        if self.problem.variety.is_some() {
-            self.correlations.push(correlations);
-        }
-    }
-
-    /// Whether a cheaper label that can stand for this one was met after it.
-    fn is_superseded(&self, automaton: &mut Automaton<'_>, at: u32) -> bool {
-        let label = &self.labels[at as usize];
-        let met = &self.met[&(label.length, label.piece)];
-        met.iter().any(|&other| {
-            let other = &self.labels[other as usize];
-            other.cost < label.cost
-                && (!self.by_drift || other.drift == label.drift)
-                && automaton.dominates(other.state, label.state)
-        })
-    }
-
-    fn penalty(&self, at: u32) -> Cost {
-        self.problem.variety.map_or(0, |v| v.penalty(&self.correlations[at as usize]))
-    }
-
-    /// The pieces of a run, latest first.
-    fn backwards(&self, at: u32) -> impl Iterator<Item = usize> + '_ {
-        let mut next = Some(at);
-        std::iter::from_fn(move || {
-            let at = next?;
-            let label = &self.labels[at as usize];
-            next = (label.parent != at).then_some(label.parent);
-            Some(label.piece as usize)
-        })
-    }
-
-    fn sequence(&self, at: u32) -> Vec<usize> {
-        let mut sequence: Vec<usize> = self.backwards(at).collect();
-        sequence.reverse();
-        sequence
     }
 }

@@ -75,6 +75,8 @@ struct State {
     right: Vec<u16>,
     closed: u32,
     holes: u32,
+    /// The number of open components.
+    open: u32,
 }
 
 /// States and transitions for one goal over one catalogue of pieces.
@@ -85,8 +87,8 @@ pub struct Automaton<'a> {
     states: Vec<State>,
     ids: FxHashMap<State, StateId>,
     starts: FxHashMap<usize, Option<StateId>>,
-    steps: FxHashMap<(StateId, u32), Option<StateId>>,
-    comparisons: FxHashMap<(StateId, StateId), bool>,
+    steps: FxHashMap<u64, Option<StateId>>,
+    comparisons: FxHashMap<u64, bool>,
 }
 
 impl<'a> Automaton<'a> {
@@ -127,11 +129,11 @@ impl<'a> Automaton<'a> {
     /// The state of a run in `state` followed by `piece`, whose left portals are as many as the run's right
     /// ones; `None` if it is dead.
     pub fn step(&mut self, state: StateId, piece: usize) -> Option<StateId> {
-        let key = (state, piece as u32);
+        let key = pair(state.0, piece as u32);
         if let Some(&known) = self.steps.get(&key) {
             return known;
         }
-        let State { left, right, closed, holes } = &self.states[state.index()];
+        let State { left, right, closed, holes, .. } = &self.states[state.index()];
         let wide = |labels: &[u16]| labels.iter().map(|&l| u32::from(l)).collect::<Vec<_>>();
         // χ only carries the holes here, and labels that the goal does not read are not kept.
         let mut run = Descriptor::new(&wide(left), &wide(right), *closed, 0);
@@ -175,6 +177,7 @@ impl<'a> Automaton<'a> {
             right,
             closed: if self.goal.components.is_some() { run.closed() } else { 0 },
             holes: if self.goal.holes.is_some() { holes } else { 0 },
+            open,
         };
         if let Some(&id) = self.ids.get(&state) {
             return Some(id);
@@ -188,7 +191,7 @@ impl<'a> Automaton<'a> {
     /// Whether a run in `state` is complete and meets the goal: no portals are open (open runs), or its right
     /// portals can be glued to its left ones with the goal's topology (rings).
     pub fn accepts(&self, state: StateId) -> bool {
-        let State { left, right, closed, holes } = &self.states[state.index()];
+        let State { left, right, closed, holes, .. } = &self.states[state.index()];
         match self.shape {
             Shape::Open => {
                 right.is_empty()
@@ -235,13 +238,18 @@ impl<'a> Automaton<'a> {
             Dominance::Coarser => (a, b),
             Dominance::Finer => (b, a),
         };
-        if let Some(&known) = self.comparisons.get(&(coarse, fine)) {
-            return known;
+        // A partition that is coarser and not equal has fewer components.
+        if self.states[coarse.index()].open >= self.states[fine.index()].open {
+            return false;
         }
-        let found = is_coarser(&self.states[coarse.index()], &self.states[fine.index()]);
-        self.comparisons.insert((coarse, fine), found);
-        found
+        let states = &self.states;
+        let compare = || is_coarser(&states[coarse.index()], &states[fine.index()]);
+        *self.comparisons.entry(pair(coarse.0, fine.0)).or_insert_with(compare)
     }
+}
+
+fn pair(high: u32, low: u32) -> u64 {
+    u64::from(high) << 32 | u64::from(low)
 }
 
 /// Whether portals that `fine` connects are connected in `coarse` too, all counters being equal.

@@ -1,0 +1,3 @@
+//! Whole jobs.
+mod plan;
+pub use plan::{Plan, PlanError, PlanOptions, plan};

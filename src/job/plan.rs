@@ -1,0 +1,174 @@
+//! From a catalogue in millimetres to a search problem in whole numbers, and back to a plan.
+
+use crate::pieces::{Catalogue, CostWeights};
+use crate::solver::{self, Cost, Problem, Refusal, Solution, Step, Unsolved, Variety};
+use crate::topology::{Goal, Shape};
+
+/// What is asked of the sequence.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanOptions {
+    /// Open run or ring.
+    pub shape: Shape,
+    /// The arc length L in millimetres.
+    pub length_mm: f64,
+    /// The height H of the band in millimetres, the offset of a piece stays within half of it, up or down.
+    pub height_mm: f64,
+    /// The topology.
+    pub goal: Goal,
+    /// The weights with which the catalogue was made.
+    pub weights: CostWeights,
+    /// A seed varies the cost of each jump, so that another seed gives another band near the optimum; without
+    /// one the optimum itself is found.
+    pub seed: Option<u64>,
+    /// The penalty on repetition.
+    pub variety: Option<Variety>,
+}
+
+/// A sequence of pieces that meets the constraints.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// The pieces in order.
+    pub sequence: Vec<usize>,
+    /// The cost by Zhou 2014 §3.6.1 with jumps, without what a seed adds.
+    pub cost: f64,
+    /// How much less a sequence that meets the constraints could cost at most. 0 is the optimum; `None` says
+    /// nothing, as a seed or the variety term was asked for.
+    pub gap: Option<f64>,
+    /// ε: the lengths that were accepted are those within this part of L.
+    pub epsilon: f64,
+    /// The length of the pieces before they are stretched to L, in millimetres.
+    pub natural_length_mm: f64,
+    /// Labels that the search made.
+    pub labels: usize,
+    /// Distinct states of the automaton that it met.
+    pub states: usize,
+}
+
+/// Why there is no plan.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PlanError {
+    /// The constraints cannot be met, and why.
+    Refused {
+        /// The constraint.
+        refusal: Refusal,
+        /// The length of a bin in millimetres, for lengths in the refusal.
+        bin_mm: f64,
+    },
+    /// The search was given up.
+    TooLarge {
+        /// Labels made until then.
+        labels: usize,
+    },
+}
+
+/// The first ε is the paper's (Zhou 2014 §3.5); it is widened until a sequence is found. Beyond the last, the
+/// stretching would show.
+const EPSILONS: [f64; 4] = [0.05, 0.1, 0.2, 0.3];
+/// A bin is at least this part of L. Finer bins cost time and gain a stretch of a fraction of a percent.
+const MOST_BINS: f64 = 2048.0;
+/// Units of drift in the height of the band.
+const DRIFT_UNITS: f64 = 64.0;
+/// How much a seed may add to the cost of a jump, as a part of λ.
+const SEED_SPREAD: f64 = 0.5;
+/// The most labels of a search: about 1.5 GiB.
+const LABEL_LIMIT: usize = 800_000;
+
+/// The best sequence of `catalogue` for `options`.
+///
+/// # Errors
+/// [`PlanError`] when the constraints cannot be met or the search is too large.
+pub fn plan(catalogue: &Catalogue, options: &PlanOptions) -> Result<Plan, PlanError> {
+    let bin_mm = bin_mm(catalogue, options.length_mm);
+    let mut problem = problem(catalogue, options, bin_mm);
+    for epsilon in EPSILONS {
+        problem.window = window(options.length_mm, epsilon, bin_mm);
+        match solver::solve(&problem, options.goal) {
+            Ok(solution) => return Ok(finish(catalogue, options, solution, epsilon)),
+            Err(Unsolved::TooLarge { labels }) => return Err(PlanError::TooLarge { labels }),
+            Err(Unsolved::Infeasible) => {}
+        }
+    }
+    let longest = (problem.window.end() * 2).max((catalogue.width_mm() * 2.0 / bin_mm) as u32);
+    Err(PlanError::Refused { refusal: solver::explain(&problem, options.goal, longest), bin_mm })
+}
+
+fn finish(catalogue: &Catalogue, options: &PlanOptions, solution: Solution, epsilon: f64) -> Plan {
+    let Solution { sequence, cost, gap, labels, states } = solution;
+    let cost = match options.seed {
+        None => cost as f64 / 1e6,
+        Some(_) => {
+            let unseeded = PlanOptions { seed: None, ..*options };
+            let true_cost =
+                problem(catalogue, &unseeded, bin_mm(catalogue, options.length_mm)).cost_of(&sequence);
+            true_cost.unwrap_or(cost) as f64 / 1e6
+        }
+    };
+    let natural_length_mm = sequence.iter().map(|&p| catalogue.pieces()[p].width_mm).sum();
+    let gap = (options.seed.is_none() && options.variety.is_none()).then_some(gap as f64 / 1e6);
+    Plan { sequence, cost, gap, epsilon, natural_length_mm, labels, states }
+}
+
+fn bin_mm(catalogue: &Catalogue, length_mm: f64) -> f64 {
+    let narrowest = catalogue.pieces().iter().map(|p| p.width_mm).fold(f64::INFINITY, f64::min);
+    (narrowest / 2.0).max(length_mm / MOST_BINS)
+}
+
+fn window(length_mm: f64, epsilon: f64, bin_mm: f64) -> std::ops::RangeInclusive<u32> {
+    let low = (length_mm * (1.0 - epsilon) / bin_mm).ceil();
+    let high = (length_mm * (1.0 + epsilon) / bin_mm).floor();
+    low as u32..=(high.max(low) as u32)
+}
+
+fn problem<'a>(catalogue: &'a Catalogue, options: &PlanOptions, bin_mm: f64) -> Problem<'a> {
+    let pieces = catalogue.pieces();
+    let last = pieces.len() - 1;
+    let micro = |cost: f64| (cost * 1e6).round() as Cost;
+    // Both ends of each piece are rounded to bins, so that errors do not add up along the exemplar.
+    let bins = |mm: f64| (mm / bin_mm).round() as u32;
+    let widths = pieces.iter().map(|p| (bins(p.x_mm + p.width_mm) - bins(p.x_mm)).max(1)).collect();
+    let unit_mm = options.height_mm / DRIFT_UNITS;
+    let steps = catalogue
+        .joins()
+        .iter()
+        .enumerate()
+        .map(|(from, joins)| {
+            joins
+                .iter()
+                .map(|join| {
+                    let spread = if join.is_natural { 0.0 } else { SEED_SPREAD * options.weights.jump };
+                    let extra = options.seed.map_or(0.0, |seed| spread * noise(seed, from, join.to));
+                    let rise = (join.rise_mm / unit_mm).round() as i32;
+                    Step { to: join.to, cost: micro(join.cost + extra), rise }
+                })
+                .collect()
+        })
+        .collect();
+    // Only the exemplar's own ends are no jumps.
+    let end_cost = |is_own: bool| Some(if is_own { 0 } else { micro(options.weights.jump) });
+    let begin =
+        pieces.iter().enumerate().map(|(i, p)| if p.left.is_empty() { end_cost(i == 0) } else { None });
+    let end =
+        pieces.iter().enumerate().map(|(i, p)| if p.right.is_empty() { end_cost(i == last) } else { None });
+    Problem {
+        shape: options.shape,
+        descriptors: catalogue.descriptors(),
+        widths,
+        steps,
+        begin: begin.collect(),
+        end: end.collect(),
+        window: 0..=0,
+        drift_limit: (DRIFT_UNITS / 2.0) as i32,
+        variety: options.variety,
+        label_limit: LABEL_LIMIT,
+    }
+}
+
+/// A number in 0..1 that depends on all three arguments (the finaliser of SplitMix64).
+fn noise(seed: u64, from: usize, to: usize) -> f64 {
+    let mut z = seed ^ ((from as u64) << 32 | to as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    for factor in [0xbf58_476d_1ce4_e5b9, 0x94d0_49bb_1331_11eb] {
+        z = (z ^ (z >> 30)).wrapping_mul(factor);
+        z ^= z >> 27;
+    }
+    (z >> 11) as f64 / (1u64 << 53) as f64
+}
