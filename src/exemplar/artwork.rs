@@ -25,6 +25,8 @@ const OPACITY_EPSILON: f32 = 1e-4;
 #[derive(Debug, Clone)]
 pub(super) enum Brush {
     Fill(FillRule),
+    /// The fill of a shape that has a stroke too: it may enclose nothing, as SVG fills even a line by default.
+    FillUnderStroke(FillRule),
     Stroke(Stroke),
 }
 
@@ -266,19 +268,25 @@ impl<'t> Collector<'t> {
             let path = bez_path(path.data());
             Item::Shape(Shape { place: place.clone(), path, to_mm: at.transform, brush })
         };
-        if let Some(fill) = path.fill()
-            && self.is_ink(fill.paint(), fill.opacity().get(), "a fill opacity of", &place, at)?
-        {
-            items.push(shape(Brush::Fill(match fill.rule() {
+        let mut inked =
+            |paint, opacity: usvg::Opacity, what| self.is_ink(paint, opacity.get(), what, &place, at);
+        let fill = match path.fill() {
+            Some(fill) if inked(fill.paint(), fill.opacity(), "a fill opacity of")? => Some(fill),
+            _ => None,
+        };
+        let stroke = match path.stroke() {
+            Some(stroke) if inked(stroke.paint(), stroke.opacity(), "a stroke opacity of")? => Some(stroke),
+            _ => None,
+        };
+        if let Some(fill) = fill {
+            let rule = match fill.rule() {
                 usvg::FillRule::NonZero => FillRule::NonZero,
                 usvg::FillRule::EvenOdd => FillRule::EvenOdd,
-            })));
+            };
+            let alone = stroke.is_none();
+            items.push(shape(if alone { Brush::Fill(rule) } else { Brush::FillUnderStroke(rule) }));
         }
-        if let Some(stroke) = path.stroke()
-            && self.is_ink(stroke.paint(), stroke.opacity().get(), "a stroke opacity of", &place, at)?
-        {
-            items.push(shape(Brush::Stroke(stroke_style(stroke))));
-        }
+        items.extend(stroke.map(|stroke| shape(Brush::Stroke(stroke_style(stroke)))));
         Ok(())
     }
 

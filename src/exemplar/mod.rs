@@ -26,6 +26,7 @@ mod scan;
 mod source;
 mod style;
 
+use std::fmt;
 use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
@@ -61,7 +62,7 @@ impl Default for ReadOptions {
 }
 
 /// An ornament to learn from: a region in millimetres, y up, where the drawing had it on its page.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Exemplar {
     name: String,
     sha256: String,
@@ -113,6 +114,7 @@ impl Exemplar {
             None => natural,
         };
         exemplar.note_overhang();
+        exemplar.note_specks();
         Ok(exemplar)
     }
 
@@ -144,6 +146,20 @@ impl Exemplar {
         if outside {
             self.notes.push("some ink lies outside of the page; it is read all the same".to_owned());
         }
+    }
+
+    /// Parts and holes too small for anyone to see count all the same, so they are told.
+    fn note_specks(&mut self) {
+        let grid = self.region.grid();
+        let speck_mm2 = self.options.chord_mm * self.options.chord_mm;
+        let mut specks = self.region.contours().filter(|c| c.area_mm2(grid).abs() < speck_mm2);
+        let Some(first) = specks.next() else { return };
+        let (count, at) = (1 + specks.count(), grid.to_mm(first.points()[0]));
+        self.notes.push(format!(
+            "{count} part(s) or hole(s) are smaller than {speck_mm2:.1e} mm2, the first at ({:.4}, {:.4}) mm; they are \
+             counted like any other",
+            at.x, at.y
+        ));
     }
 
     /// A copy scaled by `factor` about the origin of the page. Its curves are flattened anew, so that the
@@ -178,6 +194,19 @@ impl Exemplar {
     /// What is worth telling the user though it is no error, one sentence each.
     pub fn notes(&self) -> &[String] {
         &self.notes
+    }
+}
+
+impl fmt::Debug for Exemplar {
+    /// A summary: an ornament has thousands of vertices.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Exemplar")
+            .field("name", &self.name)
+            .field("sha256", &self.sha256)
+            .field("scale", &self.scale)
+            .field("components", &self.region.components())
+            .field("holes", &self.region.holes())
+            .finish_non_exhaustive()
     }
 }
 

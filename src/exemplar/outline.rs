@@ -24,7 +24,8 @@ struct Flat {
     place: Place,
     polygons: Vec<Vec<DVec2>>,
     rule: FillRule,
-    is_fill: bool,
+    /// Whether it is a mistake when the shape covers nothing.
+    needs_area: bool,
 }
 
 /// The region of `artwork` scaled by `scale` about the origin, with curves flattened within `chord_mm`.
@@ -96,14 +97,14 @@ impl Flattener<'_> {
         let bounds = to_mm.transform_rect_bbox(shape.path.control_box());
         self.check_range(&shape.place, [bounds.x0, bounds.y0, bounds.x1, bounds.y1])?;
         let (path, rule) = match &shape.brush {
-            Brush::Fill(rule) => (to_mm * &shape.path, *rule),
+            Brush::Fill(rule) | Brush::FillUnderStroke(rule) => (to_mm * &shape.path, *rule),
             Brush::Stroke(style) => {
                 (to_mm * self.outline(shape, style, largest_scale(to_mm))?, FillRule::NonZero)
             }
         };
         let mut polygons: Vec<Vec<DVec2>> = Vec::new();
-        let tolerance =
-            if matches!(shape.brush, Brush::Fill(_)) { self.chord_mm / 2.0 } else { self.chord_mm / 4.0 };
+        let stroked = matches!(shape.brush, Brush::Stroke(_));
+        let tolerance = if stroked { self.chord_mm / 4.0 } else { self.chord_mm / 2.0 };
         kurbo::flatten(&path, tolerance, |el| match el {
             PathEl::MoveTo(p) => polygons.push(vec![DVec2::new(p.x, p.y)]),
             PathEl::LineTo(p) => {
@@ -127,7 +128,7 @@ impl Flattener<'_> {
             place: shape.place.clone(),
             polygons,
             rule,
-            is_fill: matches!(shape.brush, Brush::Fill(_)),
+            needs_area: matches!(shape.brush, Brush::Fill(_)),
         })
     }
 
@@ -154,7 +155,10 @@ impl Flattener<'_> {
             path = with_dots(&path, &style);
         } else {
             let dot = DOT * style.width;
-            style.dash_pattern.iter_mut().step_by(2).for_each(|dash| *dash = dash.max(dot));
+            for dash in style.dash_pattern.chunks_exact_mut(2).filter(|dash| dash[0] == 0.0) {
+                // The gap gives what the dash takes, or the dots would drift.
+                (dash[0], dash[1]) = (dot, (dash[1] - dot).max(0.0));
+            }
             let period = style.dash_pattern.iter().sum::<f64>();
             let length: f64 = path.segments().map(|s| s.arclen(period.max(tolerance))).sum();
             self.dashes += length / period * style.dash_pattern.len() as f64;
@@ -230,7 +234,7 @@ impl Filler {
         };
         let polygons: Vec<_> = flat.polygons.iter().map(snap).collect::<Result<_, _>>()?;
         let paths = simple(&polygons, flat.rule);
-        if paths.is_empty() && flat.is_fill {
+        if paths.is_empty() && flat.needs_area {
             return Err(ExemplarFault::NoArea { place: flat.place.clone() });
         }
         Ok(paths)

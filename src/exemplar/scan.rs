@@ -60,7 +60,10 @@ pub(super) fn scan(source: &Source, limits: &Limits, strictness: Strictness) -> 
     };
     let root = source.root();
     walk.note_units(root);
-    walk.element(root, &Context { depth: 1, visible: true, dashed: false, anchor: None, counted: true })?;
+    walk.element(
+        root,
+        &Context { depth: 1, visible: true, dashed: false, anchor: None, counted: true, used: false },
+    )?;
     Ok(walk.found)
 }
 
@@ -74,6 +77,8 @@ struct Context<'a> {
     anchor: Option<Node<'a, 'a>>,
     /// Whether the library reports it as a shape of the drawing: not so in markers and clip paths.
     counted: bool,
+    /// Whether a `use` leads right here, which alone makes a symbol drawn.
+    used: bool,
 }
 
 struct Walk<'a> {
@@ -131,8 +136,9 @@ impl<'a> Walk<'a> {
             None | Some("inherit") => context.dashed,
             Some(dashes) => dashes != "none",
         };
-        let inner = Context { depth: context.depth + 1, visible, dashed, ..context.clone() };
+        let inner = Context { depth: context.depth + 1, visible, dashed, used: false, ..context.clone() };
         match tag {
+            "symbol" if !context.used => Ok(()),
             "svg" | "g" | "a" | "symbol" | "switch" | "use" => {
                 if strict {
                     self.conditions(node, &declared)?;
@@ -304,7 +310,7 @@ impl<'a> Walk<'a> {
         }
         self.open_uses.push(node.id());
         let anchor = context.anchor.or(Some(node));
-        let result = self.element(target, &Context { anchor, ..context.clone() });
+        let result = self.element(target, &Context { anchor, used: true, ..context.clone() });
         self.open_uses.pop();
         result
     }
@@ -371,6 +377,7 @@ impl<'a> Walk<'a> {
                 counted: false,
                 visible: true,
                 dashed: false,
+                used: false,
             };
             if wanted == "clipPath" {
                 self.properties(target, &declared, &inner)?;
