@@ -179,20 +179,16 @@ impl Checker<'_> {
             "fill" | "stroke" if Paint::from_str(value).is_err() => {
                 return invalid("a colour is wanted, such as #000, black or none");
             }
-            "opacity" | "fill-opacity" | "stroke-opacity" => {
-                if svgtypes_opacity(value).is_none() {
-                    return invalid("a number from 0 to 1 or a percentage is wanted");
-                }
+            "opacity" | "fill-opacity" | "stroke-opacity" if opacity(value).is_none() => {
+                return invalid("a number from 0 to 1 or a percentage is wanted");
             }
-            "stroke-width" => {
-                if self.length(node, name, value)?.number < 0.0 {
-                    return invalid("a stroke width is 0 or more");
-                }
+            "stroke-width" if self.length(node, name, value)?.number < 0.0 => {
+                return invalid("a stroke width is 0 or more");
             }
             "stroke-dashoffset" => {
                 self.length(node, name, value)?;
             }
-            "stroke-miterlimit" if svgtypes_number(value).is_none_or(|n| n < 1.0) => {
+            "stroke-miterlimit" if finite_number(value).is_none_or(|n| n < 1.0) => {
                 return invalid("a number of 1 or more is wanted");
             }
             "stroke-dasharray" if value != "none" => {
@@ -281,11 +277,11 @@ impl Checker<'_> {
     }
 }
 
-fn svgtypes_number(value: &str) -> Option<f64> {
+fn finite_number(value: &str) -> Option<f64> {
     svgtypes::Number::from_str(value).ok().map(|n| n.0).filter(|n| n.is_finite())
 }
 
-fn svgtypes_opacity(value: &str) -> Option<f64> {
+fn opacity(value: &str) -> Option<f64> {
     let length = Length::from_str(value).ok()?;
     let number = match length.unit {
         LengthUnit::None => length.number,

@@ -10,9 +10,9 @@ use crate::planar::GridError;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Place {
     /// The tag name without a prefix.
-    pub tag: String,
+    pub tag: Box<str>,
     /// The element's own id.
-    pub id: Option<String>,
+    pub id: Option<Box<str>>,
     /// The line of the file on which the element begins, counted from 1.
     pub line: usize,
 }

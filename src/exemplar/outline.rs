@@ -134,7 +134,7 @@ impl Flattener<'_> {
 
     fn check_range(&self, place: &Place, values: [f64; 4]) -> Result<(), ExemplarFault> {
         let limit = Grid::MAX_EXTENT_MM;
-        match values.into_iter().find(|v| !(v.abs() <= limit)) {
+        match values.into_iter().find(|v| v.is_nan() || v.abs() > limit) {
             Some(value) => Err(ExemplarFault::Coordinate { place: place.clone(), value, limit, unit: "mm" }),
             None => Ok(()),
         }

@@ -57,6 +57,7 @@ pub(super) fn scan(source: &Source, limits: &Limits, strictness: Strictness) -> 
         segments: 0,
         open_uses: Vec::new(),
         referenced: HashSet::new(),
+        marker: None,
     };
     let root = source.root();
     walk.note_units(root);
@@ -64,7 +65,13 @@ pub(super) fn scan(source: &Source, limits: &Limits, strictness: Strictness) -> 
         root,
         &Context { depth: 1, visible: true, dashed: false, anchor: None, counted: true, used: false },
     )?;
-    Ok(walk.found)
+    // A marker is drawn at every vertex: at most so many times does the library copy its elements.
+    match walk.marker {
+        Some((place, elements)) if walk.segments.saturating_mul(elements) > limits.segments => {
+            Err(ExemplarFault::TooManySegments { place, limit: limits.segments })
+        }
+        _ => Ok(walk.found),
+    }
 }
 
 /// What an element gets from those around it.
@@ -94,6 +101,8 @@ struct Walk<'a> {
     open_uses: Vec<NodeId>,
     /// Markers and clip paths that were looked into.
     referenced: HashSet<NodeId>,
+    /// The first marker in use, and the number of elements in all of them.
+    marker: Option<(Place, usize)>,
 }
 
 impl<'a> Walk<'a> {
@@ -356,6 +365,10 @@ impl<'a> Walk<'a> {
         if matches!(d.value, "none" | "inherit") {
             return Ok(());
         }
+        if wanted == "marker" && !context.counted {
+            let what = "has markers inside of a marker or clip path";
+            return Err(self.unsupported(node, what, "remove the inner markers"));
+        }
         let fault = |problem| {
             let (place, target) = (self.source.place(node), shortened(d.value));
             Err(ExemplarFault::Reference { place, property: d.name.to_owned(), target, problem })
@@ -384,7 +397,12 @@ impl<'a> Walk<'a> {
             } else {
                 self.checker.view_box(target)?;
             }
+            let before = self.elements;
             self.children(target, &inner)?;
+            if wanted == "marker" {
+                let place = self.source.place(target);
+                self.marker.get_or_insert((place, 0)).1 += self.elements - before;
+            }
         }
         Ok(())
     }

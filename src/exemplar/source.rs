@@ -116,8 +116,8 @@ impl<'a> Source<'a> {
     /// The name of an element for messages.
     pub(super) fn place(&self, node: Node) -> Place {
         Place {
-            tag: node.tag_name().name().to_owned(),
-            id: node.attribute("id").map(str::to_owned),
+            tag: node.tag_name().name().into(),
+            id: node.attribute("id").map(Into::into),
             line: self.line(node.range().start),
         }
     }
