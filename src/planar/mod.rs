@@ -21,6 +21,6 @@ mod touch;
 pub use contour::Contour;
 pub use grid::{Grid, GridError, GridPoint, orient};
 pub use index::{EdgeIndex, IndexedEdge};
-pub use overlay::FillRule;
+pub use overlay::{FillRule, boundaries};
 pub use region::{Fault, Part, Region, RegionError};
 pub use tolerances::{Tolerances, TolerancesError};

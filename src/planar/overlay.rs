@@ -67,6 +67,13 @@ pub(super) fn fill<'a>(paths: impl Iterator<Item = &'a [GridPoint]>, rule: FillR
     from_engine(overlay.overlay(OverlayRule::Subject, rule.engine()))
 }
 
+/// The boundary of the set that `paths` fill under `rule`, with the ink on the left of every edge. Unlike the
+/// contours of a [`super::Region`] these may still touch in points: they are for building further sets, where
+/// more ink may yet cover the touch.
+pub fn boundaries(paths: &[Vec<GridPoint>], rule: FillRule) -> Vec<Contour> {
+    fill(paths.iter().map(Vec::as_slice), rule).into_iter().flatten().collect()
+}
+
 /// The points within `radius` steps of the ink (negative: the points of the ink farther than that from its
 /// boundary), with round joins approximated to within about `chord` steps.
 pub(super) fn offset<'a>(
