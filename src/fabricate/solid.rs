@@ -191,7 +191,10 @@ mod tests {
         #[test]
         fn shells_and_genus_are_components_and_holes(region in region(), thickness in 0.1..20.0f64) {
             prop_assume!(!region.is_empty());
-            let solid = extrude(&region, thickness).unwrap();
+            let solid = extrude(&region, thickness);
+            // Three lines of the lattice that nearly meet in a point can leave ink finer than floats.
+            prop_assume!(!matches!(solid, Err(FabricateError::TooFine { .. })));
+            let solid = solid.unwrap();
             prop_assert_eq!(shells_and_genus(&solid), (region.components(), region.holes()));
             let snapped = snapped_to_f32(&region).unwrap();
             let expected = snapped.area_mm2() * f64::from(thickness as f32);
