@@ -20,6 +20,9 @@ const FITTING: f64 = 1.0 - THINNING - 2.0 * ROUNDING;
 const ROUNDS: usize = 6;
 /// A start so many times off the tolerance is not worth Newton steps.
 const HOPELESS: f64 = 30.0;
+/// A split leaves this part of the turn on either side. Less, and slivers are split off; more, and splits
+/// miss the spot where the curve changes.
+const CENTRAL: f64 = 0.2;
 /// The most that one cubic turns, in radians: beyond it fits are loops.
 const MAX_TURN: f64 = 3.3;
 
@@ -96,12 +99,14 @@ impl Fit<'_> {
     /// Fits vertices `low` to `high` with unit tangents `leaving` and `reaching`.
     fn range(&mut self, low: usize, high: usize, leaving: DVec2, reaching: DVec2) {
         let split = if self.turn(low, high) > MAX_TURN {
-            self.middle(low, high)
+            self.turned_by(low, high, 0.5)
         } else {
             match self.cubic(low, high, leaving, reaching) {
                 Ok(segment) => return self.segments.push(segment),
                 Err(_) if high == low + 1 => return self.segments.push(Segment::Line(self.joint(high))),
-                Err(worst) => worst,
+                Err(worst) => {
+                    worst.clamp(self.turned_by(low, high, CENTRAL), self.turned_by(low, high, 1.0 - CENTRAL))
+                }
             }
         };
         let edge = |i: usize| self.run.points[i + 1] - self.run.points[i];
@@ -116,10 +121,10 @@ impl Fit<'_> {
         self.turned[high - 1] - self.turned[low]
     }
 
-    /// The inner vertex at half of the turn.
-    fn middle(&self, low: usize, high: usize) -> usize {
-        let half = (self.turned[low] + self.turned[high - 1]) / 2.0;
-        let after = self.turned[low..high].partition_point(|&t| t < half);
+    /// The inner vertex at which `part` of the turn is done.
+    fn turned_by(&self, low: usize, high: usize, part: f64) -> usize {
+        let wanted = self.turned[low] + part * self.turn(low, high);
+        let after = self.turned[low..high].partition_point(|&t| t < wanted);
         (low + after).clamp(low + 1, (high - 1).max(low + 1))
     }
 
@@ -141,7 +146,7 @@ impl Fit<'_> {
         let tolerances = &self.run.tolerances[low..high];
         let tightest = tolerances.iter().copied().fold(f64::INFINITY, f64::min);
         if tightest <= 0.0 {
-            return Err(self.middle(low, high));
+            return Err(self.turned_by(low, high, 0.5));
         }
         let mut parameters = by_length(points);
         let mut worst = 0;

@@ -66,12 +66,19 @@ impl Polygon {
                 (shape.directions[from % n], shape.directions[from % n])
             } else {
                 // A smooth join with a line continues the line.
-                let at_end = |i: usize, line: usize, one_sided: DVec2| match () {
-                    () if corners[i % n] => one_sided,
-                    () if lines[line % n] => shape.directions[line % n],
-                    () => shape.tangent(i % n),
+                let at_end = |i: usize, beyond: usize, one_sided: DVec2| {
+                    if corners[i] {
+                        one_sided
+                    } else if lines[beyond] {
+                        shape.directions[beyond]
+                    } else {
+                        shape.tangent(i)
+                    }
                 };
-                (at_end(from, from + n - 1, shape.leaving(from % n)), at_end(to, to, shape.reaching(to % n)))
+                (
+                    at_end(from % n, (from + n - 1) % n, shape.leaving(from % n)),
+                    at_end(to % n, to % n, shape.reaching(to % n)),
+                )
             };
             runs.push(Run {
                 points: (from..=to).map(|i| thinned.points[i % n]).collect(),
