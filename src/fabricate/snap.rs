@@ -7,10 +7,15 @@ use crate::planar::{Contour, FillRule, Grid, GridPoint, Region, RegionError};
 /// rounding could bring them together again; more, and what can be written would be refused.
 const YIELD_STEPS: f64 = 4.0;
 
+/// Edges shorter than this many steps of the 32-bit grid are merged with their neighbours if the counts allow.
+/// Fewer, and a cap gets facets of so little area that programs take them for none; more, and it would show
+/// (this is 0.06 micrometres at 64 mm).
+const SHORTEST_EDGE_STEPS: i64 = 16;
+
 /// `region` with every coordinate exact in `f32` and the same components and holes.
 ///
 /// A region that is exact already is returned as it is. Otherwise every vertex goes to the nearest point of
-/// [`Grid::exact_in_f32`] for the region's extent (3.8e-6 mm at 64 mm). Where that makes contours cross or
+/// [`Grid::exact_in_f32`] for the region's extent (3.8e-6 mm at 64 mm), and edges of a few steps go. Where that makes contours cross or
 /// touch, the region is filled anew; where that joins or severs ink, all ink yields by a few steps, or all
 /// gaps do. Each is accepted only if no component and no hole came or went.
 ///
@@ -47,12 +52,20 @@ enum Attempt {
     Changed(FabricateError),
 }
 
+/// Snapped without very short edges, or with them where they are needed.
 fn snap(region: &Region, grid: Grid) -> Result<Attempt, FabricateError> {
+    match snap_with_edges(region, grid, SHORTEST_EDGE_STEPS)? {
+        Attempt::Changed(_) => snap_with_edges(region, grid, 0),
+        kept => Ok(kept),
+    }
+}
+
+fn snap_with_edges(region: &Region, grid: Grid, shortest: i64) -> Result<Attempt, FabricateError> {
     let mut paths = Vec::new();
     let mut contours = Vec::new();
     let mut fault = None;
     for contour in region.contours() {
-        let path = snapped(contour, region.grid(), grid)?;
+        let path = snapped(contour, region.grid(), grid, shortest)?;
         match Contour::new(path.clone()) {
             Some(contour) => contours.push(contour),
             None => fault = fault.or(Some(grid.to_mm(path[0]))),
@@ -82,8 +95,17 @@ fn snap(region: &Region, grid: Grid) -> Result<Attempt, FabricateError> {
     }))
 }
 
-fn snapped(contour: &Contour, from: Grid, to: Grid) -> Result<Vec<GridPoint>, FabricateError> {
-    contour.points().iter().map(|&p| Ok(to.snap(from.to_mm(p))?)).collect()
+/// The contour's points on the other grid, less those within `shortest` steps of the one before.
+fn snapped(contour: &Contour, from: Grid, to: Grid, shortest: i64) -> Result<Vec<GridPoint>, FabricateError> {
+    let mut path: Vec<GridPoint> = Vec::with_capacity(contour.points().len());
+    for &p in contour.points() {
+        let p = to.snap(from.to_mm(p))?;
+        let near = |q: &GridPoint| (p.x - q.x).abs().max((p.y - q.y).abs()) < shortest;
+        if !path.last().is_some_and(near) {
+            path.push(p);
+        }
+    }
+    Ok(path)
 }
 
 fn same_counts(a: &Region, b: &Region) -> bool {
