@@ -1,0 +1,102 @@
+//! Files: SVG, STL and PNG writers, and outputs that appear whole or not at all.
+//!
+//! A writer turns a region or a solid into bytes; [`stage`] and [`persist_all`] turn bytes into files. The
+//! two are apart so that what was written can be read again and verified under its temporary name, before
+//! anything exists under the name that was asked for.
+//!
+//! What this room promises to the next: the curves of an SVG lie within the chord tolerance of the region
+//! and have its components and holes; an STL has the solid's coordinates unrounded; the same input gives the
+//! same bytes. Excluded: standard output, and how shapes came to be.
+
+mod curves;
+mod outline;
+mod png;
+mod runs;
+mod staged;
+mod stl;
+mod svg;
+
+pub use png::{DEFAULT_PIXELS, png};
+pub use staged::{Staged, persist_all, remove_staged, stage};
+pub use stl::stl;
+pub use svg::{SvgDocument, SvgOptions, svg};
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use glam::DVec2;
+use thiserror::Error;
+
+/// Why a file cannot be written.
+#[derive(Debug, Error)]
+pub enum ExportError {
+    /// A setting of a writer is out of range.
+    #[error("{name} is {found}; it must be {wanted}")]
+    Option {
+        /// The setting.
+        name: &'static str,
+        /// What was given.
+        found: f64,
+        /// What would be accepted.
+        wanted: &'static str,
+    },
+    /// Ink lies beyond the page.
+    #[error(
+        "the ink reaches from ({:.3}, {:.3}) to ({:.3}, {:.3}) mm, beyond the page of {:.3} x {:.3} mm; move \
+         it or take a larger page", low_mm.x, low_mm.y, high_mm.x, high_mm.y, page_mm.x, page_mm.y
+    )]
+    OffPage {
+        /// The lower left corner of the ink.
+        low_mm: DVec2,
+        /// The upper right corner of the ink.
+        high_mm: DVec2,
+        /// Width and height of the page.
+        page_mm: DVec2,
+    },
+    /// There is nothing to draw.
+    #[error("there is nothing to draw: the region is empty")]
+    Empty,
+    /// The picture could not be made: no memory, or ink narrower than can be drawn.
+    #[error("the picture could not be drawn; a smaller size is likely to work")]
+    Picture,
+    /// More facets than an STL file can count.
+    #[error("{found} facets are more than an STL file holds (4294967295); take a larger chord tolerance")]
+    TooManyFacets {
+        /// The number of facets.
+        found: usize,
+    },
+    /// The output's name belongs to something else.
+    #[error("cannot write {}: it is not a file; give a file name, or - for standard output", path.display())]
+    NotAFile {
+        /// The name as it was given.
+        path: PathBuf,
+    },
+    /// The system refused.
+    #[error("cannot write {}: {source}; {}", path.display(), remedy(source))]
+    Write {
+        /// The name as it was given.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+}
+
+impl ExportError {
+    fn write(path: &Path, source: io::Error) -> Self {
+        Self::Write { path: path.to_owned(), source }
+    }
+}
+
+fn remedy(error: &io::Error) -> &'static str {
+    match error.kind() {
+        io::ErrorKind::NotFound => "make the directory first, or give another",
+        io::ErrorKind::NotADirectory => "a part of the path is a file; give another directory",
+        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
+            "give a directory that can be written to"
+        }
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+            "free some space, or give another directory"
+        }
+        _ => "try another directory",
+    }
+}

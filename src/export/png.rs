@@ -1,0 +1,92 @@
+//! A picture of a region for a person to look at.
+
+use resvg::tiny_skia::{Color, FillRule, Paint, PathBuilder, Pixmap, Transform};
+
+use super::ExportError;
+use crate::planar::Region;
+
+/// The longer side in pixels when nothing else is asked for.
+pub const DEFAULT_PIXELS: u32 = 1600;
+/// Beyond this a picture takes gigabytes; below, nothing can be seen.
+const PIXELS: std::ops::RangeInclusive<u32> = 16..=16_384;
+/// The margin on each side, as a part of the longer side of the ink.
+const MARGIN: f64 = 0.04;
+const PAPER: [u8; 3] = [0xf7, 0xf4, 0xee];
+const INK: [u8; 3] = [0x22, 0x30, 0x4f];
+
+/// `region` as a PNG of `longer_side` pixels (with margins), dark ink on light paper.
+///
+/// # Errors
+/// [`ExportError::Option`] for a size that no picture can have, [`ExportError::Empty`] without ink.
+pub fn png(region: &Region, longer_side: u32) -> Result<Vec<u8>, ExportError> {
+    if !PIXELS.contains(&longer_side) {
+        return Err(ExportError::Option {
+            name: "picture size",
+            found: longer_side.into(),
+            wanted: "from 16 to 16384 pixels",
+        });
+    }
+    let (low, high) = region.bounds_mm().ok_or(ExportError::Empty)?;
+    let size = high - low;
+    let margin = MARGIN * size.max_element();
+    let scale = f64::from(longer_side) / (size.max_element() + 2.0 * margin);
+    let [width, height] = (size + 2.0 * margin).to_array().map(|mm| (mm * scale).round() as u32);
+    let mut picture = Pixmap::new(width, height).ok_or(ExportError::Picture)?;
+    picture.fill(Color::from_rgba8(PAPER[0], PAPER[1], PAPER[2], 255));
+
+    let mut path = PathBuilder::new();
+    for contour in region.contours() {
+        for (i, &p) in contour.points().iter().enumerate() {
+            let p = region.grid().to_mm(p);
+            let x = ((p.x - low.x + margin) * scale) as f32;
+            let y = ((high.y - p.y + margin) * scale) as f32;
+            if i == 0 { path.move_to(x, y) } else { path.line_to(x, y) }
+        }
+        path.close();
+    }
+    let path = path.finish().ok_or(ExportError::Picture)?;
+    let mut paint = Paint::default();
+    paint.set_color_rgba8(INK[0], INK[1], INK[2], 255);
+    picture.fill_path(&path, &paint, FillRule::EvenOdd, Transform::identity(), None);
+    picture.encode_png().map_err(|_| ExportError::Picture)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::planar::{Grid, GridPoint};
+
+    fn frame() -> Region {
+        let grid = Grid::for_extent(100.0).unwrap();
+        let one = grid.steps(1.0);
+        let rectangle = |x: i64, y: i64, w: i64, h: i64| {
+            [(x, y), (x + w, y), (x + w, y + h), (x, y + h)]
+                .map(|(x, y)| GridPoint::new(x * one, y * one))
+                .to_vec()
+        };
+        let paths = [rectangle(10, 10, 80, 40), rectangle(20, 20, 60, 20)];
+        Region::fill(grid, &paths, crate::planar::FillRule::EvenOdd)
+    }
+
+    #[test]
+    fn ink_is_dark_and_holes_are_paper() {
+        let picture = Pixmap::decode_png(&png(&frame(), 864).unwrap()).unwrap();
+        assert_eq!((picture.width(), picture.height()), (864, 464));
+        let rgb = |x, y| {
+            let c = picture.pixel(x, y).unwrap();
+            [c.red(), c.green(), c.blue()]
+        };
+        assert_eq!(rgb(5, 5), PAPER);
+        assert_eq!(rgb(432, 232), PAPER);
+        assert_eq!(rgb(60, 232), INK);
+        assert_eq!(rgb(432, 60), INK);
+    }
+
+    #[test]
+    fn what_cannot_be_drawn_is_an_error() {
+        assert!(matches!(png(&frame(), 3), Err(ExportError::Option { .. })));
+        assert!(matches!(png(&frame(), 1 << 20), Err(ExportError::Option { .. })));
+        let empty = Region::empty(Grid::for_extent(1.0).unwrap());
+        assert!(matches!(png(&empty, 100), Err(ExportError::Empty)));
+    }
+}

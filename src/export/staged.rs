@@ -1,0 +1,207 @@
+//! Files that appear whole or not at all.
+//!
+//! Bytes go to a temporary file beside their destination; when every output of a run is there (and was read
+//! again and verified), all are renamed. A rename within a directory replaces the old file at once, so no
+//! reader ever sees half of one. A [`Staged`] that is dropped takes its temporary file with it; for a run
+//! that is interrupted, [`remove_staged`] does.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use tempfile::{Builder, TempPath};
+
+use super::ExportError;
+
+/// The temporary files of this process that still exist.
+static STAGED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+fn registry() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    // A set of paths is whole even if a thread panicked while holding it.
+    STAGED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A complete file under a temporary name, beside its destination and with the same extension. Dropping it
+/// removes it.
+#[derive(Debug)]
+pub struct Staged {
+    destination: PathBuf,
+    // `None` once it has its name.
+    temporary: Option<TempPath>,
+}
+
+impl Staged {
+    /// The name that the file is to have.
+    pub fn destination(&self) -> &Path {
+        &self.destination
+    }
+
+    /// The name that it has until then: read this to verify what was written.
+    pub fn temporary(&self) -> &Path {
+        self.temporary.as_deref().unwrap_or(&self.destination)
+    }
+
+    fn persist(mut self) -> Result<(), ExportError> {
+        let Some(temporary) = self.temporary.take() else { return Ok(()) };
+        // Held over the rename, so that an interruption either finds the temporary name or nothing to do.
+        let mut registry = registry();
+        let name = temporary.to_path_buf();
+        let renamed = temporary.persist(&self.destination);
+        registry.remove(&name);
+        // On failure the error gives the temporary file back, which removes it.
+        renamed.map_err(|failed| ExportError::write(&self.destination, failed.error))
+    }
+}
+
+impl Drop for Staged {
+    fn drop(&mut self) {
+        if let Some(temporary) = self.temporary.take() {
+            registry().remove(&*temporary);
+        }
+    }
+}
+
+/// Writes `bytes` beside `path` under a temporary name.
+///
+/// The permissions are those of any new file (by the umask), and a symbolic link is followed, as if the file
+/// had been written in place.
+///
+/// # Errors
+/// [`ExportError::NotAFile`] when `path` names a directory or a device, [`ExportError::Write`] when the
+/// directory is missing, cannot be written to, or is full. Nothing is left behind.
+pub fn stage(path: &Path, bytes: &[u8]) -> Result<Staged, ExportError> {
+    let destination = match fs::metadata(path) {
+        Ok(found) if found.is_file() => {
+            fs::canonicalize(path).map_err(|error| ExportError::write(path, error))?
+        }
+        Ok(_) => return Err(ExportError::NotAFile { path: path.to_owned() }),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => path.to_owned(),
+        Err(error) => return Err(ExportError::write(path, error)),
+    };
+    if destination.file_name().is_none() || path.as_os_str().to_string_lossy().ends_with(['/', '\\']) {
+        return Err(ExportError::NotAFile { path: path.to_owned() });
+    }
+    let directory = match destination.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    let suffix = destination.extension().map(|e| format!(".{}", e.to_string_lossy())).unwrap_or_default();
+    let mut builder = Builder::new();
+    builder.prefix(".openwork-").suffix(&suffix);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // The umask takes away what it takes from every new file.
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    let mut registry = registry();
+    let mut file = builder.tempfile_in(directory).map_err(|error| ExportError::write(path, error))?;
+    registry.insert(file.path().to_owned());
+    drop(registry);
+    let written = file.write_all(bytes).and_then(|()| file.flush());
+    // From here on, every way out removes the file.
+    let staged = Staged { destination, temporary: Some(file.into_temp_path()) };
+    written.map_err(|error| ExportError::write(path, error))?;
+    Ok(staged)
+}
+
+/// Gives all files their names, in order.
+///
+/// # Errors
+/// [`ExportError::Write`] names the file that could not be renamed; those before it have their names, those
+/// after it are removed. As everything else was checked before, this takes a change of the directory
+/// meanwhile.
+pub fn persist_all(files: Vec<Staged>) -> Result<(), ExportError> {
+    files.into_iter().try_for_each(Staged::persist)
+}
+
+/// Removes every temporary file of this process, for a signal handler that ends it. A file that is being
+/// renamed is waited for.
+pub fn remove_staged() {
+    for path in std::mem::take(&mut *registry()) {
+        // Nobody is left to hear of a failure.
+        let _ = fs::remove_file(path);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(directory: &Path) -> Vec<String> {
+        let entries = fs::read_dir(directory).unwrap();
+        let mut names: Vec<String> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn files_appear_at_the_rename_and_not_before() {
+        let room = tempfile::tempdir().unwrap();
+        let (one, two) = (room.path().join("a.svg"), room.path().join("b.stl"));
+        fs::write(&two, "old").unwrap();
+        let staged = vec![stage(&one, b"one").unwrap(), stage(&two, b"two").unwrap()];
+        assert!(!one.exists());
+        assert_eq!(fs::read(&two).unwrap(), b"old");
+        assert_eq!(fs::read(staged[1].temporary()).unwrap(), b"two");
+        assert_eq!(staged[1].temporary().extension().unwrap(), "stl");
+        persist_all(staged).unwrap();
+        assert_eq!(names(room.path()), ["a.svg", "b.stl"]);
+        assert_eq!(fs::read(&two).unwrap(), b"two");
+    }
+
+    #[test]
+    fn what_is_not_persisted_leaves_nothing() {
+        let room = tempfile::tempdir().unwrap();
+        let staged = stage(&room.path().join("a.svg"), b"one").unwrap();
+        assert!(registry().contains(staged.temporary()));
+        let temporary = staged.temporary().to_owned();
+        drop(staged);
+        assert!(!registry().contains(&temporary));
+        assert!(names(room.path()).is_empty());
+    }
+
+    #[test]
+    fn a_failed_rename_leaves_nothing_of_its_own() {
+        let room = tempfile::tempdir().unwrap();
+        let path = room.path().join("a.svg");
+        let staged = vec![stage(&path, b"one").unwrap(), stage(&room.path().join("b.svg"), b"two").unwrap()];
+        // Meanwhile a directory takes the name.
+        fs::create_dir(&path).unwrap();
+        let error = persist_all(staged).unwrap_err();
+        assert!(error.to_string().contains("a.svg"), "{error}");
+        assert_eq!(names(room.path()), ["a.svg"]);
+    }
+
+    #[test]
+    fn destinations_that_are_no_files_are_refused() {
+        let room = tempfile::tempdir().unwrap();
+        let message = |path: &Path| stage(path, b"one").unwrap_err().to_string();
+        assert!(message(room.path()).contains("not a file"));
+        assert!(message(&room.path().join("new/")).contains("not a file"));
+        let missing = message(&room.path().join("no/a.svg"));
+        assert!(missing.contains("no/a.svg") && missing.contains("directory"), "{missing}");
+        let file = room.path().join("file");
+        fs::write(&file, "").unwrap();
+        assert!(message(&file.join("a.svg")).contains("a.svg"));
+        assert_eq!(names(room.path()), ["file"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn permissions_are_those_of_a_new_file_and_links_are_followed() {
+        use std::os::unix::fs::PermissionsExt;
+        let room = tempfile::tempdir().unwrap();
+        let (ours, usual, link) = ["a.svg", "usual", "link.svg"].map(|n| room.path().join(n)).into();
+        persist_all(vec![stage(&ours, b"one").unwrap()]).unwrap();
+        fs::write(&usual, "").unwrap();
+        let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
+        assert_eq!(mode(&ours), mode(&usual));
+        std::os::unix::fs::symlink(&ours, &link).unwrap();
+        persist_all(vec![stage(&link, b"two").unwrap()]).unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read(&ours).unwrap(), b"two");
+    }
+}

@@ -1,0 +1,193 @@
+//! A region whose coordinates are exact in 32-bit floats.
+
+use super::FabricateError;
+use crate::planar::{Contour, FillRule, Grid, GridPoint, Region, RegionError};
+
+/// How far ink (or gap) may yield where the 32-bit grid cannot keep two contours apart, in its steps. Fewer, and
+/// rounding could bring them together again; more, and what can be written would be refused.
+const YIELD_STEPS: f64 = 4.0;
+
+/// Edges shorter than this many steps of the 32-bit grid are merged with their neighbours if the counts allow.
+/// Fewer, and a cap gets facets of so little area that programs take them for none; more, and it would show
+/// (this is 0.06 micrometres at 64 mm).
+const SHORTEST_EDGE_STEPS: i64 = 16;
+
+/// `region` with every coordinate exact in `f32` and the same components and holes.
+///
+/// A region that is exact already is returned as it is. Otherwise every vertex goes to the nearest point of
+/// [`Grid::exact_in_f32`] for the region's extent (3.8e-6 mm at 64 mm), and edges of a few steps go. Where that makes contours cross or
+/// touch, the region is filled anew; where that joins or severs ink, all ink yields by a few steps, or all
+/// gaps do. Each is accepted only if no component and no hole came or went.
+///
+/// # Errors
+/// [`FabricateError::TooFine`] names a place that the grid cannot resolve; [`FabricateError::Grid`] when the
+/// extent is out of range; [`FabricateError::Empty`].
+pub fn snapped_to_f32(region: &Region) -> Result<Region, FabricateError> {
+    let (low, high) = region.bounds_mm().ok_or(FabricateError::Empty)?;
+    if is_exact(region) {
+        return Ok(region.clone());
+    }
+    // Room for the yield, which may pass the power of two that the extent just fits.
+    let extent = low.abs().max(high.abs()).max_element();
+    let grid = Grid::exact_in_f32(extent * (1.0 + 1e-6))?;
+    let failed = match snap(region, grid)? {
+        Attempt::Kept(snapped) => return Ok(snapped),
+        Attempt::Changed(failed) => failed,
+    };
+    for steps in [-YIELD_STEPS, YIELD_STEPS] {
+        let yielded = region.offset(steps * grid.step_mm(), grid.step_mm());
+        if same_counts(&yielded, region)
+            && let Attempt::Kept(snapped) = snap(&yielded, grid)?
+        {
+            return Ok(snapped);
+        }
+    }
+    Err(failed)
+}
+
+enum Attempt {
+    /// The same components and holes, on the grid.
+    Kept(Region),
+    /// The error that tells what became of them.
+    Changed(FabricateError),
+}
+
+/// Snapped without very short edges, or with them where they are needed.
+fn snap(region: &Region, grid: Grid) -> Result<Attempt, FabricateError> {
+    match snap_with_edges(region, grid, SHORTEST_EDGE_STEPS)? {
+        Attempt::Changed(_) => snap_with_edges(region, grid, 0),
+        kept => Ok(kept),
+    }
+}
+
+fn snap_with_edges(region: &Region, grid: Grid, shortest: i64) -> Result<Attempt, FabricateError> {
+    let mut paths = Vec::new();
+    let mut contours = Vec::new();
+    let mut fault = None;
+    for contour in region.contours() {
+        let path = snapped(contour, region.grid(), grid, shortest)?;
+        match Contour::new(path.clone()) {
+            Some(contour) => contours.push(contour),
+            None => fault = fault.or(Some(grid.to_mm(path[0]))),
+        }
+        paths.push(path);
+    }
+    if fault.is_none() {
+        match Region::from_contours(grid, contours) {
+            // Valid contours may still nest otherwise, when one was turned inside out.
+            Ok(snapped) if same_counts(&snapped, region) => return Ok(Attempt::Kept(snapped)),
+            Ok(_) => {}
+            Err(RegionError::Invalid { faults }) => fault = Some(faults[0].position_mm()),
+            Err(RegionError::Grid(error)) => return Err(error.into()),
+        }
+    }
+    let filled = Region::fill(grid, &paths, FillRule::Positive);
+    if same_counts(&filled, region) {
+        return Ok(Attempt::Kept(filled));
+    }
+    Ok(Attempt::Changed(FabricateError::TooFine {
+        position_mm: fault.unwrap_or_else(|| grid.to_mm(paths[0][0])),
+        step_mm: grid.step_mm(),
+        components: region.components(),
+        holes: region.holes(),
+        found_components: filled.components(),
+        found_holes: filled.holes(),
+    }))
+}
+
+/// The contour's points on the other grid, less those within `shortest` steps of the one before.
+fn snapped(contour: &Contour, from: Grid, to: Grid, shortest: i64) -> Result<Vec<GridPoint>, FabricateError> {
+    let mut path: Vec<GridPoint> = Vec::with_capacity(contour.points().len());
+    for &p in contour.points() {
+        let p = to.snap(from.to_mm(p))?;
+        let near = |q: &GridPoint| (p.x - q.x).abs().max((p.y - q.y).abs()) < shortest;
+        if !path.last().is_some_and(near) {
+            path.push(p);
+        }
+    }
+    Ok(path)
+}
+
+fn same_counts(a: &Region, b: &Region) -> bool {
+    (a.components(), a.holes()) == (b.components(), b.holes())
+}
+
+fn is_exact(region: &Region) -> bool {
+    let grid = region.grid();
+    let exact = |mm: f64| f64::from(mm as f32) == mm;
+    region.contours().flat_map(|c| c.points()).map(|&p| grid.to_mm(p)).all(|p| exact(p.x) && exact(p.y))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec2;
+
+    use super::*;
+
+    fn region(grid: Grid, paths: &[&[(f64, f64)]]) -> Region {
+        let snap = |&(x, y): &(f64, f64)| grid.snap(DVec2::new(x, y)).unwrap();
+        let paths: Vec<Vec<GridPoint>> = paths.iter().map(|p| p.iter().map(snap).collect()).collect();
+        Region::fill(grid, &paths, FillRule::EvenOdd)
+    }
+
+    #[test]
+    fn an_exact_region_is_left_alone() {
+        let grid = Grid::for_extent(100.0).unwrap();
+        let square = region(grid, &[&[(0.0, 0.0), (10.5, 0.0), (10.5, 10.25), (0.0, 10.25)]]);
+        assert_eq!(snapped_to_f32(&square).unwrap(), square);
+    }
+
+    #[test]
+    fn vertices_move_by_half_a_step_at_most() {
+        let grid = Grid::for_extent(100.0).unwrap();
+        let triangle = region(grid, &[&[(0.1, 0.2), (70.3, 10.7), (33.3, 60.9)]]);
+        let snapped = snapped_to_f32(&triangle).unwrap();
+        assert!(is_exact(&snapped));
+        let half = snapped.grid().step_mm() / 2.0;
+        let pairs = triangle.contours().next().unwrap().points().iter();
+        for (p, q) in pairs.zip(snapped.contours().next().unwrap().points()) {
+            let moved = (grid.to_mm(*p) - snapped.grid().to_mm(*q)).abs();
+            assert!(moved.max_element() <= half, "{moved}");
+        }
+    }
+
+    #[test]
+    fn a_touch_is_mended_where_the_counts_allow() {
+        // The spike of the lower square ends a hundredth of a float step below the upper one.
+        let grid = Grid::for_extent(1000.0).unwrap();
+        let spike: &[(f64, f64)] =
+            &[(900.0, 0.0), (910.0, 0.0), (910.0, 5.0), (905.1, 10.0 - 1e-6), (900.0, 5.0)];
+        let near = region(grid, &[spike, &[(900.0, 10.0), (910.0, 10.0), (910.0, 15.0), (900.0, 15.0)]]);
+        assert_eq!(near.components(), 2);
+        let mended = snapped_to_f32(&near).unwrap();
+        assert_eq!((mended.components(), mended.holes()), (2, 0));
+        assert!((mended.area_mm2() - near.area_mm2()).abs() < 1.0);
+    }
+
+    #[test]
+    fn what_floats_cannot_resolve_is_refused_with_its_place() {
+        // Two wires of 0.1 micrometres as far apart, at the far end of 90 m: neither ink nor gap can yield.
+        let grid = Grid::for_extent(90_000.0).unwrap();
+        let wire = |x: f64| [(x, 0.0), (x + 1e-4, 0.0), (x + 1e-4, 5.0), (x, 5.0)];
+        let wires = region(grid, &[&wire(89_980.0), &wire(89_980.0 + 2e-4)]);
+        let Err(FabricateError::TooFine { position_mm, components, .. }) = snapped_to_f32(&wires) else {
+            panic!("the gap is below the resolution of floats")
+        };
+        assert_eq!(components, 2);
+        assert!((position_mm.x - 89_980.0).abs() < 0.01, "{position_mm}");
+    }
+
+    #[test]
+    fn a_gap_that_floats_cannot_resolve_opens() {
+        let grid = Grid::for_extent(90_000.0).unwrap();
+        let bar = |x: f64| [(x, 0.0), (x + 5.0, 0.0), (x + 5.0, 5.0), (x, 5.0)];
+        let bars = region(grid, &[&bar(89_980.0), &bar(89_985.0 + 1e-4)]);
+        assert_eq!(snapped_to_f32(&bars).unwrap().components(), 2);
+    }
+
+    #[test]
+    fn nothing_is_an_error() {
+        let empty = Region::empty(Grid::for_extent(1.0).unwrap());
+        assert_eq!(snapped_to_f32(&empty), Err(FabricateError::Empty));
+    }
+}
