@@ -19,7 +19,7 @@ pub struct Narrowest {
     /// The width in millimetres: eroding (or dilating) by half of it changes the counts.
     pub width_mm: f64,
     /// The middle of the place in millimetres, y up.
-    #[serde(serialize_with = "super::report::point")]
+    #[serde(serialize_with = "super::json::point")]
     pub position_mm: DVec2,
 }
 
@@ -175,53 +175,15 @@ mod tests {
     #[test]
     fn thin_wall_and_hole() {
         let ring = region(&[circle(0.0, 0.0, 10.0, 90), circle(1.0, 0.0, 8.5, 90)]);
-        assert_near(min_feature(&ring, 10.0, 0.01), 0.5, (9.75, 0.0), 0.1);
+        assert_near(min_feature(&ring, 10.0, 0.01), 0.5, (9.75, 0.0), 1.0);
         assert_near(min_gap(&ring, 20.0, 0.01), 17.0 * (2f64.to_radians()).cos(), (1.0, 0.0), 0.3);
     }
 
     #[test]
     fn neighbours() {
         let two = region(&[rectangle(0.0, 0.0, 5.0, 5.0), rectangle(5.25, 1.0, 7.0, 2.0)]);
-        assert_near(min_feature(&two, 10.0, 0.01), 2.0, (8.0, 2.0), 4.0);
-        assert_near(min_gap(&two, 10.0, 0.01), 0.25, (5.125, 2.0), 1.1);
+        assert_near(min_feature(&two, 10.0, 0.01), 2.0, (8.75, 2.0), 2.6);
+        assert_near(min_gap(&two, 10.0, 0.01), 0.25, (5.125, 2.0), 1.5);
     }
 
-    #[test]
-    fn by_bisection() {
-        for f in std::fs::read_dir("/work/shared/exemplars").unwrap() {
-            let p = f.unwrap().path();
-            if p.extension().is_none_or(|e| e != "svg") {
-                continue;
-            }
-            let text = std::fs::read_to_string(&p).unwrap();
-            let doc = roxmltree::Document::parse(&text).unwrap();
-            let grid = Grid::for_extent(64.0).unwrap();
-            let mut all = Vec::new();
-            for n in doc.descendants().filter(|n| n.has_tag_name("path") || n.tag_name().name() == "path") {
-                let bez = kurbo::BezPath::from_svg(n.attribute("d").unwrap()).unwrap();
-                let mut paths: Vec<Vec<GridPoint>> = vec![];
-                kurbo::flatten(bez, 0.002, |el| match el {
-                    kurbo::PathEl::MoveTo(p) => paths.push(vec![grid.snap(DVec2::new(p.x, -p.y)).unwrap()]),
-                    kurbo::PathEl::LineTo(p) => {
-                        paths.last_mut().unwrap().push(grid.snap(DVec2::new(p.x, -p.y)).unwrap())
-                    }
-                    _ => {}
-                });
-                all.push(Region::fill(grid, &paths, FillRule::NonZero));
-            }
-            let r = Region::union(grid, &all);
-            let t = std::time::Instant::now();
-            let w = widths(&r, 0.01);
-            let t1 = t.elapsed();
-            let t = std::time::Instant::now();
-            let bf = bisected(|x| endures_erosion(&r, x, 0.01), 5.0);
-            let bg = bisected(|x| endures_dilation(&r, x, 0.01), 5.0);
-            eprintln!(
-                "{:25} {} {} v{} feature {:.5?} {:.5?}  gap {:.5?} {:.5?}  {:?} {:?}",
-                p.file_name().unwrap().to_str().unwrap(),
-                r.components(), r.holes(), r.vertices(),
-                w.feature.map(|n| n.width_mm), bf, w.gap.map(|n| n.width_mm), bg, t1, t.elapsed()
-            );
-        }
-    }
 }
