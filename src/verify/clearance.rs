@@ -12,25 +12,18 @@
 
 use glam::DVec2;
 use spade::handles::FixedVertexHandle;
-use spade::{
-    AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation,
-};
+use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation};
 
+use super::ascent::{self, Edge, Spot, ascend};
 use crate::planar::Region;
 
-/// Rounds of the iteration for a peak; it converges quadratically when there is one.
-const PEAK_ROUNDS: usize = 5;
+/// How far a peak is looked for from a triangle's circumcentre, as part of its radius. No edge is nearer than
+/// 0.7 of it where edges are not encroached; farther off, edges that were not looked at could be in the way.
+const PEAK_REACH: f64 = 0.5;
 /// Halvings in the search for the middle between two stretches of the boundary.
 const CROSSING_ROUNDS: usize = 12;
 /// Relative slack in tests of angles and distances, against rounding only.
 const ROUNDING: f64 = 1e-9;
-
-/// A place and its distance to the boundary, in millimetres.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Spot {
-    pub(super) radius: f64,
-    pub(super) at: DVec2,
-}
 
 /// A way between two places of the same side of the boundary.
 #[derive(Debug, Clone, Copy)]
@@ -39,6 +32,8 @@ pub(super) struct Way {
     pub(super) ends: [usize; 2],
     /// The narrowest spot along the way.
     pub(super) narrowest: Spot,
+    /// Whether that is a pass, and not just the lower end.
+    pub(super) is_pass: bool,
 }
 
 /// The distance to the boundary on both of its sides.
@@ -69,7 +64,6 @@ impl Clearance {
             places.push((border.peak(corners, across), ink[face.index()]));
         }
         let mut ways = Vec::with_capacity(mesh.num_undirected_edges());
-        let mut passes = Vec::with_capacity(mesh.num_undirected_edges());
         for edge in mesh.undirected_edges().filter(|e| !e.is_constraint_edge()) {
             let (a, b) = (edge.as_directed(), edge.as_directed().rev());
             let (Some(left), Some(right)) = (a.face().as_inner(), b.face().as_inner()) else { continue };
@@ -85,10 +79,9 @@ impl Clearance {
                     places[end].0 = crossing;
                 }
             }
-            ways.push(Way { ends, narrowest: crossing });
-            passes.push(pass.is_some());
+            ways.push(Way { ends, narrowest: crossing, is_pass: pass.is_some() });
         }
-        for (way, _) in ways.iter_mut().zip(passes).filter(|(_, pass)| !pass) {
+        for way in ways.iter_mut().filter(|way| !way.is_pass) {
             // Without a pass in between, the distance falls evenly to the lower end.
             let [a, b] = way.ends.map(|end| places[end].0);
             way.narrowest = if a.radius < b.radius { a } else { b };
@@ -152,8 +145,7 @@ struct Border {
 
 impl Border {
     fn new(mesh: &Mesh) -> Self {
-        let at: Vec<DVec2> =
-            mesh.vertices().map(|v| v.position()).map(|p| DVec2::new(p.x, p.y)).collect();
+        let at: Vec<DVec2> = mesh.vertices().map(|v| v.position()).map(|p| DVec2::new(p.x, p.y)).collect();
         let mut next: Vec<[usize; 2]> = (0..at.len()).map(|v| [v, v]).collect();
         for edge in mesh.undirected_edges().filter(|e| e.is_constraint_edge()) {
             let [p, q]: [FixedVertexHandle; 2] = edge.vertices().map(|v| v.fix());
@@ -165,57 +157,36 @@ impl Border {
         Self { at, next }
     }
 
-    /// The point nearest to `x` on the two edges that meet in `v`.
-    fn nearest(&self, v: usize, x: DVec2) -> DVec2 {
-        let p = self.at[v];
-        let [a, b] = self.next[v].map(|w| {
-            let d = self.at[w] - p;
-            let t = ((x - p).dot(d) / d.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-            p + d * t
-        });
-        if a.distance_squared(x) <= b.distance_squared(x) { a } else { b }
+    /// The two edges that meet in `v`.
+    fn edges(&self, v: usize) -> [Edge; 2] {
+        self.next[v].map(|w| (self.at[v], self.at[w]))
+    }
+
+    /// The distance of `x` to the boundary around `v`, squared.
+    fn distance_squared(&self, v: usize, x: DVec2) -> f64 {
+        let [a, b] = self.edges(v).map(|edge| ascent::nearest(edge, x).distance_squared(x));
+        a.min(b)
     }
 
     /// `x` with its distance to the boundary around `vertices`.
     fn spot(&self, x: DVec2, vertices: &[usize]) -> Spot {
-        let nearest = vertices.iter().map(|&v| self.nearest(v, x).distance(x));
-        Spot { radius: nearest.fold(f64::INFINITY, f64::min), at: x }
+        let squares = vertices.iter().map(|&v| self.distance_squared(v, x));
+        Spot { radius: squares.fold(f64::INFINITY, f64::min).sqrt(), at: x }
     }
 
-    /// The centre and radius of the circle that touches the boundary around all three corners or, failing
-    /// that, of the largest one met on the way to it. The boundary around the corners `across` the sides
-    /// limits it too.
+    /// The peak of the distance to the boundary around a triangle's `corners` and the corners `across` its
+    /// sides.
     fn peak(&self, corners: [usize; 3], across: [usize; 3]) -> Spot {
         let [a, b, c] = corners.map(|v| self.at[v]);
-        let around = [corners, across].concat();
-        let mut best = self.spot((a + b + c) / 3.0, &around);
-        let Some(mut x) = circumcentre(a, b, c) else { return best };
-        let reach = 2.0 * x.distance(a);
-        for _ in 0..PEAK_ROUNDS {
-            let spot = self.spot(x, &around);
-            if spot.radius > best.radius {
-                best = spot;
-            }
-            let contacts = corners.map(|v| self.nearest(v, x));
-            let distances = contacts.map(|y| y.distance(x));
-            if distances.contains(&0.0) {
-                break;
-            }
-            let normals = [0, 1, 2].map(|i| (x - contacts[i]) / distances[i]);
-            // Move so that all three distances agree: differences of the linearised equations.
-            let (u, v) = (normals[1] - normals[0], normals[2] - normals[0]);
-            let (du, dv) = (distances[0] - distances[1], distances[0] - distances[2]);
-            let det = u.perp_dot(v);
-            if det.abs() < 1e-6 {
-                break;
-            }
-            let step = DVec2::new(du * v.y - dv * u.y, dv * u.x - du * v.x) / det;
-            if step.length() > reach || step.length() < ROUNDING * reach {
-                break;
-            }
-            x += step;
+        let mut edges = [[(DVec2::ZERO, DVec2::ZERO); 2]; 6];
+        for (slot, &v) in edges.iter_mut().zip(corners.iter().chain(&across)) {
+            *slot = self.edges(v);
         }
-        best
+        let edges = edges.as_flattened();
+        let middle = ascent::spot((a + b + c) / 3.0, edges);
+        let Some(centre) = circumcentre(a, b, c) else { return middle };
+        let peak = ascend(centre, edges, PEAK_REACH * centre.distance(a));
+        if peak.radius > middle.radius { peak } else { middle }
     }
 
     /// The pass between the boundary around the first two vertices of `around`: a segment that is the
@@ -227,9 +198,7 @@ impl Border {
         let mut offer = |x: DVec2, y: DVec2| {
             let spot = Spot { radius: x.distance(y) * 0.5, at: (x + y) * 0.5 };
             let clear = spot.radius * (1.0 - ROUNDING);
-            if best.is_none_or(|b| spot.radius < b.radius)
-                && self.spot(spot.at, &around).radius >= clear
-            {
+            if best.is_none_or(|b| spot.radius < b.radius) && self.spot(spot.at, &around).radius >= clear {
                 best = Some(spot);
             }
         };
@@ -256,7 +225,7 @@ impl Border {
         let (mut a, mut b) = (self.at[p], self.at[q]);
         for _ in 0..CROSSING_ROUNDS {
             let x = (a + b) * 0.5;
-            if self.nearest(p, x).distance_squared(x) < self.nearest(q, x).distance_squared(x) {
+            if self.distance_squared(p, x) < self.distance_squared(q, x) {
                 a = x;
             } else {
                 b = x;

@@ -50,11 +50,11 @@ impl Shape {
     /// The polygons of the path, within `chord_mm` of its curves.
     pub(super) fn loops(&self, chord_mm: f64) -> Vec<Loop> {
         let mut loops: Vec<Loop> = Vec::new();
-        let mut add = |p: kurbo::Point| DVec2::new(p.x, p.y);
+        let vector = |p: kurbo::Point| DVec2::new(p.x, p.y);
         kurbo::flatten(&self.path, chord_mm, |element| match element {
-            PathEl::MoveTo(p) => loops.push(Loop { points: vec![add(p)], closed: false }),
+            PathEl::MoveTo(p) => loops.push(Loop { points: vec![vector(p)], closed: false }),
             PathEl::LineTo(p) => {
-                let p = add(p);
+                let p = vector(p);
                 match loops.last_mut() {
                     Some(current) if !current.closed => current.points.push(p),
                     // After Z a path goes on from the first point.
@@ -81,7 +81,11 @@ impl Shape {
 
     /// A polygon on `grid`.
     pub(super) fn snap(&self, grid: Grid, points: &[DVec2]) -> Result<Vec<GridPoint>, VerifyError> {
-        points.iter().map(|&p| grid.snap(p)).collect::<Result<_, _>>().map_err(|source| self.misplaced(source))
+        points
+            .iter()
+            .map(|&p| grid.snap(p))
+            .collect::<Result<_, _>>()
+            .map_err(|source| self.misplaced(source))
     }
 
     /// The error for a coordinate of this shape.

@@ -38,7 +38,8 @@ pub fn endures_erosion(region: &Region, radius_mm: f64, chord_mm: f64) -> bool {
         let first = lasting.next();
         let area = |&&i: &&usize| eroded.parts()[i].exterior().doubled_area();
         let piece = first.or_else(|| pieces.iter().max_by_key(area));
-        lasting.next().is_none() && piece.is_some_and(|&i| eroded.parts()[i].holes().len() == part.holes().len())
+        lasting.next().is_none()
+            && piece.is_some_and(|&i| eroded.parts()[i].holes().len() == part.holes().len())
     })
 }
 

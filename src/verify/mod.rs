@@ -11,10 +11,11 @@
 //! Excluded: repair. What cannot be judged (text, images, masks, filters, clip paths) is an error that says
 //! so; what can be judged but is not in order is a fault in the report.
 
+mod ascent;
 mod check;
 mod clearance;
-mod drawn;
 mod drawing;
+mod drawn;
 mod endure;
 mod error;
 mod json;

@@ -114,6 +114,8 @@ fn shape(node: Node<'_, '_>, rule: FillRule, height_mm: f64) -> Result<Option<Sh
             path.apply_affine(upright(height_mm));
             Ok(Some(Shape { element, line, path, rule, is_stroke: false }))
         }
-        Err(e) => Err(VerifyError::PathData { element, line, message: format!("its data cannot be read: {e}") }),
+        Err(e) => {
+            Err(VerifyError::PathData { element, line, message: format!("its data cannot be read: {e}") })
+        }
     }
 }

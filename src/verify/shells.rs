@@ -284,7 +284,8 @@ impl Soup {
         }
         let mut faults = Vec::new();
         for tally in tallies.iter().filter(|t| t.volume < 0.0) {
-            let around = |t: &&Tally| t.volume > 0.0 && t.low.cmplt(tally.low).all() && t.high.cmpgt(tally.high).all();
+            let around =
+                |t: &&Tally| t.volume > 0.0 && t.low.cmplt(tally.low).all() && t.high.cmpgt(tally.high).all();
             if tallies.iter().find(around).is_none() {
                 let position_mm = self.points(tally.first)[0].to_array();
                 faults.push(StlFault { kind: StlFaultKind::InsideOut, facet: tally.first, position_mm });

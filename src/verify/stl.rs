@@ -38,7 +38,8 @@ fn binary(bytes: &[u8]) -> Result<Vec<Facet>, VerifyError> {
     let Some((preamble, records)) = bytes.split_at_checked(PREAMBLE) else {
         return Err(VerifyError::TooShort { bytes: bytes.len() });
     };
-    let count = preamble[HEADER..].try_into().map(u32::from_le_bytes).expect("the preamble ends in four bytes");
+    let count =
+        preamble[HEADER..].try_into().map(u32::from_le_bytes).expect("the preamble ends in four bytes");
     let wanted = PREAMBLE as u64 + u64::from(count) * RECORD as u64;
     if bytes.len() as u64 != wanted {
         return Err(VerifyError::Length { triangles: count, wanted, found: bytes.len() as u64 });
@@ -54,14 +55,16 @@ fn record(bytes: &[u8]) -> Facet {
 }
 
 fn looks_ascii(bytes: &[u8]) -> bool {
-    bytes.starts_with(b"solid") && bytes.iter().take(512).all(|b| b.is_ascii_graphic() || b.is_ascii_whitespace())
+    bytes.starts_with(b"solid")
+        && bytes.iter().take(512).all(|b| b.is_ascii_graphic() || b.is_ascii_whitespace())
 }
 
 fn ascii(bytes: &[u8]) -> Result<Vec<Facet>, VerifyError> {
     let error = |message: String| VerifyError::AsciiStl { message };
     let text = std::str::from_utf8(bytes).map_err(|e| error(e.to_string()))?;
     // The parser stops at the first end, and wants a space after the first word.
-    let end = text.find("endsolid").ok_or_else(|| error("it has no \"endsolid\"; it was cut off".to_owned()))?;
+    let end =
+        text.find("endsolid").ok_or_else(|| error("it has no \"endsolid\"; it was cut off".to_owned()))?;
     if text[end..].lines().skip(1).any(|line| !line.trim().is_empty()) {
         return Err(error("it goes on after \"endsolid\"; one solid in a file is wanted".to_owned()));
     }

@@ -99,8 +99,12 @@ impl fmt::Display for SvgFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (what, p) = match self {
             Self::Crossing { position_mm } => ("contours cross or touch", position_mm),
-            Self::Nesting { position_mm } => ("a contour covers ink twice or is a hole in nothing", position_mm),
-            Self::Overlap { area_mm2 } => return write!(f, "elements overlap: {area_mm2:.4} mm2 are painted twice"),
+            Self::Nesting { position_mm } => {
+                ("a contour covers ink twice or is a hole in nothing", position_mm)
+            }
+            Self::Overlap { area_mm2 } => {
+                return write!(f, "elements overlap: {area_mm2:.4} mm2 are painted twice");
+            }
             Self::Open { element, position_mm } => {
                 write!(f, "{element}: ")?;
                 ("a filled subpath is not closed", position_mm)
@@ -144,9 +148,12 @@ pub fn read_svg(bytes: &[u8], chord_mm: f64) -> Result<SvgReport, VerifyError> {
 fn count(drawing: &Drawing, chord_mm: f64) -> Result<SvgReport, VerifyError> {
     let mut faults = Vec::new();
     let loops: Vec<_> = drawing.shapes.iter().map(|shape| shape.loops(chord_mm)).collect();
-    let grid = grid(drawing, loops.iter().zip(&drawing.shapes).flat_map(|(loops, shape)| {
-        loops.iter().flat_map(move |l| l.points.iter().map(move |&p| (p, shape)))
-    }))?;
+    let grid = grid(
+        drawing,
+        loops.iter().zip(&drawing.shapes).flat_map(|(loops, shape)| {
+            loops.iter().flat_map(move |l| l.points.iter().map(move |&p| (p, shape)))
+        }),
+    )?;
     let mut filled = Vec::with_capacity(loops.len());
     let mut contours = Vec::new();
     for (shape, loops) in drawing.shapes.iter().zip(&loops) {
