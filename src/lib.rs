@@ -12,3 +12,4 @@ pub mod planar;
 pub mod reeb;
 pub mod solver;
 pub mod topology;
+pub mod verify;
