@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use glam::DVec2;
 use sha2::{Digest, Sha256};
 
 use super::builder::{BandJob, SlicingChoice};
@@ -47,6 +48,8 @@ struct Cut {
     exemplar: Exemplar,
     catalogue: Catalogue,
     height_mm: f64,
+    /// Parts and holes that are too small to be told from nothing at the chord error.
+    specks: Vec<DVec2>,
 }
 
 impl Band {
@@ -264,7 +267,9 @@ fn sha256_of(file: &Path) -> String {
 }
 
 fn slice(job: &BandJob, exemplar: Exemplar) -> Result<Cut, JobError> {
-    let region = exemplar.region();
+    let speck_mm2 = job.tolerances.chord_mm().powi(2);
+    let (region, specks) = exemplar.region().without_specks(speck_mm2);
+    let region = &region;
     let (low, high) = region.bounds_mm().unwrap_or_default();
     let rule = match job.options.slicing {
         SlicingChoice::Reeb => SlicingRule::reeb_for_width(high.x - low.x),
@@ -273,7 +278,7 @@ fn slice(job: &BandJob, exemplar: Exemplar) -> Result<Cut, JobError> {
     };
     let slicing = Slicing::new(region, &ReebGraph::new(region), rule, &job.tolerances)?;
     let catalogue = Catalogue::new(region, &slicing.cuts, &job.options.weights);
-    Ok(Cut { catalogue, height_mm: high.y - low.y, exemplar })
+    Ok(Cut { catalogue, height_mm: high.y - low.y, exemplar, specks })
 }
 
 /// The topology of a sequence by joining all descriptors, independently of the automaton that led the search.
@@ -341,6 +346,15 @@ fn describe(
     let worst = |angle: fn(&crate::fit::Seam) -> f64| outline.seams.iter().map(angle).fold(0.0, f64::max);
     let length_mm = map.curve().length_mm();
     let mut notes = cut.exemplar.notes().to_vec();
+    if let [first, ..] = cut.specks[..] {
+        notes.push(format!(
+            "{} speck(s) of less than {:.1e} mm2 were left out, the first at ({:.3}, {:.3}) mm; a smaller --chord keeps them",
+            cut.specks.len(),
+            job.tolerances.chord_mm().powi(2),
+            first.x,
+            first.y
+        ));
+    }
     if plan.epsilon > 0.05 {
         notes.push(format!(
             "no sequence came within 5 % of the length; within {:.0} % one did, and it is stretched by {:.1} %",
@@ -388,7 +402,7 @@ fn describe(
         cost_gap: plan.gap,
         successors: options.weights.successors,
         epsilon: plan.epsilon,
-        length_error_mm: plan.natural_length_mm - length_mm,
+        length_error_mm: length_mm / outline.stretch - length_mm,
         squash: outline.squash,
         squeezes: map.squeezes().to_vec(),
         seams: SeamReport {
