@@ -5,10 +5,18 @@ use std::process::ExitCode;
 
 use thiserror::Error;
 
-use super::args::{Arguments, BandArguments, Command, ExtrudeArguments, ToleranceArguments, VerifyArguments};
+use super::args::{
+    AnalyzeArguments, Arguments, BandArguments, Command, ExtrudeArguments, ToleranceArguments,
+    VerifyArguments,
+};
 use super::progress::Progress;
-use crate::job::{BandBuilder, BandReport, Format, JobError, Output, Target, extrude};
+use crate::analysis::{Analysis, AnalysisError};
+use crate::exemplar::{Exemplar, Limits, ReadOptions};
+use crate::export;
+use crate::job::{BandBuilder, BandReport, Format, JobError, Output, SlicingChoice, Target, extrude};
+use crate::pieces::CostWeights;
 use crate::planar::{Tolerances, TolerancesError};
+use crate::reeb::{SlicingError, SlicingRule};
 use crate::verify::{self, Expected, Mismatch, VerifyError};
 
 /// Whatever ends the program with a message.
@@ -24,6 +32,8 @@ pub(super) enum CliError {
     Mismatch { file: String, mismatch: Mismatch },
     #[error("{file}: the name does not say what it is; verify reads .svg and .stl")]
     UnknownKind { file: String },
+    #[error(transparent)]
+    Analysis(#[from] AnalysisError),
     #[error("cannot write to standard output: {0}")]
     Stdout(std::io::Error),
 }
@@ -40,6 +50,8 @@ impl CliError {
             Self::Job(job) => job.exit_code(),
             Self::Unreadable { .. } | Self::Unjudged { .. } | Self::UnknownKind { .. } | Self::Stdout(_) => 2,
             Self::Mismatch { .. } => 4,
+            Self::Analysis(AnalysisError::Slicing(SlicingError::TooThin { .. })) => 3,
+            Self::Analysis(_) => 2,
         }
     }
 }
@@ -47,7 +59,7 @@ impl CliError {
 pub(super) fn run(arguments: Arguments) -> Result<ExitCode, CliError> {
     match arguments.command {
         Command::Band(band) => run_band(&band),
-        Command::Analyze(_) => unreachable!(),
+        Command::Analyze(analyze) => run_analyze(&analyze),
         Command::Extrude(extrude) => run_extrude(&extrude),
         Command::Verify(verify) => run_verify(&verify),
     }
@@ -129,6 +141,61 @@ fn say_band(report: &BandReport) {
     }
 }
 
+fn run_analyze(arguments: &AnalyzeArguments) -> Result<ExitCode, CliError> {
+    let outputs: Vec<Output> =
+        arguments.output.iter().map(|path| output(path, Format::Svg)).collect::<Result<_, _>>()?;
+    Output::check_distinct(outputs.iter().map(Output::target))?;
+    if let Some(stl) = outputs.iter().find(|o| o.format() == Format::Stl) {
+        return Err(CliError::Job(JobError::Option {
+            option: "--output",
+            found: format!("{:?} is a solid", stl.target()),
+            wanted: "an overlay is a picture: end the name in .svg or .png".to_owned(),
+        }));
+    }
+    let tolerances = tolerances(&arguments.tolerances)?;
+    let options = ReadOptions {
+        chord_mm: tolerances.chord_mm(),
+        target_height_mm: arguments.width,
+        limits: Limits::default(),
+    };
+    let exemplar = Exemplar::read(&arguments.exemplar, &options).map_err(JobError::from)?;
+    let rule = match arguments.slicing {
+        SlicingChoice::Reeb => None,
+        SlicingChoice::Persistence(persistence_mm) => Some(SlicingRule::Reeb { persistence_mm }),
+        SlicingChoice::Uniform(lines) => Some(SlicingRule::Uniform { lines }),
+    };
+    let analysis = Analysis::new(&exemplar, rule, &tolerances, &CostWeights::default())?;
+    write_all(&outputs, |format| match format {
+        Format::Png => analysis.overlay_png(OVERLAY_PIXELS).map_err(JobError::from),
+        Format::Svg | Format::Stl => Ok(analysis.overlay_svg().into_bytes()),
+    })?;
+    if arguments.json {
+        print_json(&analysis)?;
+    } else if !arguments.quiet && !outputs.iter().any(|o| *o.target() == Target::Stdout) {
+        print(&format!("{analysis}\n"))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The longer side of an overlay in pixels: pieces of a fine ornament are narrow.
+const OVERLAY_PIXELS: u32 = 2400;
+
+/// Writes each output whole, or none of them.
+fn write_all(
+    outputs: &[Output],
+    encode: impl Fn(Format) -> Result<Vec<u8>, JobError>,
+) -> Result<(), CliError> {
+    let mut staged = Vec::new();
+    for output in outputs {
+        let bytes = encode(output.format())?;
+        match output.target() {
+            Target::File(path) => staged.push(export::stage(path, &bytes).map_err(JobError::from)?),
+            Target::Stdout => print_bytes(&bytes)?,
+        }
+    }
+    Ok(export::persist_all(staged).map_err(JobError::from)?)
+}
+
 fn run_extrude(arguments: &ExtrudeArguments) -> Result<ExitCode, CliError> {
     let output = output(&arguments.output, Format::Stl)?;
     if output.format() != Format::Stl {
@@ -201,11 +268,15 @@ fn print_json(report: &impl serde::Serialize) -> Result<(), CliError> {
     print(&format!("{text}\n"))
 }
 
-/// Prints to standard output; a reader that has closed the pipe has had enough.
 fn print(text: &str) -> Result<(), CliError> {
+    print_bytes(text.as_bytes())
+}
+
+/// Prints to standard output; a reader that has closed the pipe has had enough.
+fn print_bytes(bytes: &[u8]) -> Result<(), CliError> {
     use std::io::Write;
     let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(bytes).and_then(|()| out.flush()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(CliError::Stdout(error)),
         _ => Ok(()),
     }
