@@ -33,7 +33,7 @@ const NONE: u32 = u32::MAX;
 pub(super) struct Labels {
     store: Vec<Label>,
     /// The label met last at each length, piece and, when runs are told apart by it, drift.
-    latest: FxHashMap<u64, u32>,
+    latest: FxHashMap<(u32, u32, i32), u32>,
     by_drift: bool,
 }
 
@@ -46,9 +46,8 @@ impl Labels {
         &self.store[at as usize]
     }
 
-    fn place(&self, label: &Label) -> u64 {
-        let drift = if self.by_drift { label.drift as i16 as u16 } else { 0 };
-        u64::from(label.length) << 40 | u64::from(label.piece) << 16 | u64::from(drift)
+    fn place(&self, label: &Label) -> (u32, u32, i32) {
+        (label.length, label.piece, if self.by_drift { label.drift } else { 0 })
     }
 
     /// Adds a label unless another can stand for it; the ones that it can stand for are superseded.
@@ -109,8 +108,8 @@ pub(super) struct Search<'s> {
     pub(super) problem: &'s Problem<'s>,
     pub(super) task: &'s Task<'s>,
     pub(super) labels: Labels,
-    /// Whether a run was dropped because it left the band.
-    pub(super) drifted_out: bool,
+    /// The least estimate of a run that was dropped because it left the band; [`NEVER`] when none was.
+    pub(super) drifted_at: Cost,
     /// Correlations of each label's run, when variety is asked for.
     correlations: Vec<Vec<f32>>,
     /// By estimate of the whole cost; among equals the longest run first, then the oldest.
@@ -124,7 +123,7 @@ impl<'s> Search<'s> {
             problem,
             task,
             labels: Labels { store: Vec::new(), latest: FxHashMap::default(), by_drift },
-            drifted_out: false,
+            drifted_at: NEVER,
             correlations: Vec::new(),
             open: BinaryHeap::new(),
         }
@@ -173,12 +172,13 @@ impl<'s> Search<'s> {
         let &Label { cost, length, piece, state, drift, .. } = self.labels.get(at);
         for step in &problem.steps[piece as usize] {
             let length = length + problem.widths[step.to];
-            if self.task.bound.at(length, step.to) == NEVER {
+            let rest = self.task.bound.at(length, step.to);
+            if rest == NEVER {
                 continue;
             }
             let drift = drift + step.rise;
             if drift.abs() > problem.drift_limit {
-                self.drifted_out = true;
+                self.drifted_at = self.drifted_at.min((cost + step.cost).saturating_add(rest));
                 continue;
             }
             if let Some(state) = automaton.step(state, step.to) {

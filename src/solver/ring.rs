@@ -1,14 +1,19 @@
 //! Rings, opened at their narrowest cut.
 //!
-//! A ring is a cyclic sequence; where it is opened does not matter, so it is opened at a cut with the fewest
-//! portals, m. Pieces with fewer than m portals on a side then cannot occur, and with m = 1 the left labels
-//! say next to nothing. For each m, the first piece runs over the pieces with m portals on the left; once the
-//! best ring through a first piece is known, that piece is removed, as every ring through it has been seen.
-//! What is left is abandoned as soon as its cheapest conceivable ring costs no less than the best found.
+//! A ring is a cyclic sequence; where it is opened does not matter to its topology, so it is opened at a cut
+//! with the fewest portals, m. Pieces with fewer than m portals on a side then cannot occur, and with m = 1
+//! the left labels say next to nothing. For each m, the first piece runs over the pieces with m portals on the
+//! left; once the best ring through a first piece is known, that piece is removed, as every ring through it
+//! has been seen. What is left is abandoned as soon as its cheapest conceivable ring costs no less than the
+//! best found.
+//!
+//! The drift of a ring is measured from where it is opened, so a ring stays in the band if it does from one
+//! of its narrowest cuts. That a ring has left the band from one first piece then says nothing about another,
+//! and a first piece from which cheap runs left the band is not removed.
 
 use super::bound::{Bound, NEVER};
 use super::problem::{Cost, Problem, Solution, Unsolved};
-use super::search::{Task, solve_task};
+use super::search::{Outcome, Task, solve_task};
 use crate::topology::Automaton;
 
 /// The cheapest ring.
@@ -21,36 +26,45 @@ pub(super) fn solve_ring(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -
     // What is broken somewhere does not go all the way round.
     portals.retain(|&m| m > 0 || !automaton.goal().closed_pattern);
     let mut best: Option<Solution> = None;
+    let mut best: Option<(Cost, Solution)> = None;
     let (mut labels, mut floor) = (0, NEVER);
     for m in portals {
         let mut allowed: Vec<bool> = (0..problem.pieces()).map(|p| left(p) >= m && right(p) >= m).collect();
         let mut firsts: Vec<usize> = (0..problem.pieces()).filter(|&p| allowed[p] && left(p) == m).collect();
         while let Some((first, estimate)) = most_promising(problem, &firsts, &allowed) {
-            let ceiling = best.as_ref().map_or(NEVER, |b| b.cost);
+            let ceiling = best.as_ref().map_or(NEVER, |b| b.0);
             if estimate >= ceiling {
+                break;
+            }
+            let label_limit = problem.label_limit.saturating_sub(labels);
+            if label_limit == 0 && best.is_some() {
+                floor = floor.min(estimate);
                 break;
             }
             let stop = closing_costs(problem, &[first], &allowed);
             let bound = Bound::new(problem, &stop, &allowed);
+            let mut seen = true;
             if bound.at(problem.widths[first], first) < ceiling {
-                let task = Task { starts: vec![(first, 0)], stop: &stop, bound: &bound, ceiling };
-                match solve_task(problem, automaton, &task) {
-                    Ok(found) => {
-                        labels += found.labels;
-                        floor = floor.min(found.cost - found.gap);
-                        best = Some(found);
-                    }
-                    Err(Unsolved::Infeasible) => {}
-                    Err(too_large) => return Err(too_large),
-                }
+                let task =
+                    Task { starts: vec![(first, 0)], stop: &stop, bound: &bound, ceiling, label_limit };
+                let outcome: Outcome = solve_task(problem, automaton, &task);
+                labels += outcome.labels;
+                floor = floor.min(outcome.floor);
+                seen = !outcome.drifted;
+                best = outcome.found.or(best);
             }
-            allowed[first] = false;
+            allowed[first] &= !seen;
             firsts.retain(|&p| p != first);
         }
     }
-    let best = best.ok_or(Unsolved::Infeasible)?;
-    let gap = best.cost.saturating_sub(floor);
-    Ok(Solution { labels, gap, states: automaton.len(), ..best })
+    match best {
+        Some((total, solution)) => {
+            let gap = total.saturating_sub(floor);
+            Ok(Solution { labels, gap, states: automaton.len(), ..solution })
+        }
+        None if floor == NEVER => Err(Unsolved::Infeasible),
+        None => Err(Unsolved::TooLarge { labels }),
+    }
 }
 
 /// What closing a ring after each piece costs, when it began with the cheapest of `firsts`.

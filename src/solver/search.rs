@@ -1,12 +1,13 @@
 //! The search over labels, for runs from given first pieces to given last ones.
 //!
 //! It runs in up to three rounds. The first is A* without regard to where a run has drifted to, except that a
-//! run that leaves the band is dropped; if none ever was, its answer is the optimum. Otherwise a second round
-//! takes the drift into the state, looking only for what is cheaper. Either gives up at a number of labels;
-//! then a beam along the length finds a sequence if it can, and the least estimate that A* had not yet
-//! settled says how far from the optimum that may be.
+//! run that leaves the band is dropped. As long as no dropped run had a smaller estimate than the answer, the
+//! answer is the optimum; otherwise a run that was dropped may have stood for one that stays in the band, and
+//! a second round takes the drift into the state, looking only for what is cheaper. Either gives up at a
+//! number of labels; then a beam along the length finds a sequence if it can, and the least estimate that A*
+//! had not yet settled says how far from the optimum that may be.
 
-use super::bound::Bound;
+use super::bound::{Bound, NEVER};
 use super::labels::{Label, Labels, Search};
 use super::problem::{Cost, Problem, Solution, Unsolved};
 use crate::topology::Automaton;
@@ -19,14 +20,28 @@ pub(super) struct Task<'t> {
     pub(super) stop: &'t [Option<Cost>],
     /// The least cost of completing a run, ignoring topology.
     pub(super) bound: &'t Bound,
-    /// Only cheaper solutions are of interest.
+    /// Only solutions that cost less in all, variety included, are of interest.
     pub(super) ceiling: Cost,
+    /// Labels at which A* gives up; with 0 there is only the beam.
+    pub(super) label_limit: usize,
+}
+
+/// What a search found.
+pub(super) struct Outcome {
+    /// The cheapest sequence and its whole cost, variety included; its gap is not set.
+    pub(super) found: Option<(Cost, Solution)>,
+    /// No run of the task that costs less than the ceiling costs less than this.
+    pub(super) floor: Cost,
+    /// Whether a run that left the band may have been cheaper than what was found.
+    pub(super) drifted: bool,
+    /// Labels made.
+    pub(super) labels: usize,
 }
 
 /// States of the automaton at which A* gives up: with so many partitions of the portals, dominance has stopped
 /// to bite, and a beam finds a good sequence long before A* would prove one.
 const STATE_LIMIT: usize = 20_000;
-/// Labels kept at each length by the beam; doubled until a sequence is found.
+/// Labels kept at each length by the beam; widened until a sequence is found.
 const BEAMS: [usize; 3] = [128, 1024, 8192];
 
 /// The cheapest open run.
@@ -34,63 +49,72 @@ pub(super) fn solve_open(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -
     let bound = Bound::new(problem, &problem.end, &vec![true; problem.pieces()]);
     let starts =
         problem.begin.iter().enumerate().filter_map(|(piece, cost)| cost.map(|c| (piece, c))).collect();
-    let task = Task { starts, stop: &problem.end, bound: &bound, ceiling: super::bound::NEVER };
-    solve_task(problem, automaton, &task)
+    let label_limit = problem.label_limit;
+    let task = Task { starts, stop: &problem.end, bound: &bound, ceiling: NEVER, label_limit };
+    let Outcome { found, floor, labels, .. } = solve_task(problem, automaton, &task);
+    match found {
+        Some((total, solution)) => Ok(Solution { gap: total.saturating_sub(floor), labels, ..solution }),
+        None if floor == NEVER => Err(Unsolved::Infeasible),
+        None => Err(Unsolved::TooLarge { labels }),
+    }
 }
 
 /// The cheapest run for `task`.
-pub(super) fn solve_task(
-    problem: &Problem<'_>,
-    automaton: &mut Automaton<'_>,
-    task: &Task<'_>,
-) -> Result<Solution, Unsolved> {
-    let mut first = Search::new(problem, task, false);
-    let found = best_first(&mut first, automaton);
-    let labels = first.labels.len();
-    let (found, floor) = match found {
-        Ok(found) if !first.drifted_out => {
-            return found.map(|at| first.solution(automaton, at, 0)).ok_or(Unsolved::Infeasible);
-        }
-        Ok(found) => (found.map(|at| first.solution(automaton, at, 0)), 0),
-        Err(floor) => (None, floor),
-    };
-    drop(first);
-    if floor == 0 {
-        let ceiling = found.as_ref().map_or(task.ceiling, |f| f.cost);
-        let cheaper = Task { starts: task.starts.clone(), ceiling, ..*task };
-        let mut second = Search::new(problem, &cheaper, true);
-        match best_first(&mut second, automaton) {
-            Ok(None) => return found.ok_or(Unsolved::Infeasible),
-            Ok(Some(at)) => return Ok(second.solution(automaton, at, 0)),
-            Err(floor) => {
-                if let Some(found) = found {
-                    return Ok(Solution { gap: found.cost.saturating_sub(floor), ..found });
-                }
+pub(super) fn solve_task(problem: &Problem<'_>, automaton: &mut Automaton<'_>, task: &Task<'_>) -> Outcome {
+    let mut outcome = Outcome { found: None, floor: 0, drifted: true, labels: 0 };
+    if task.label_limit > 0 {
+        // In the second round only what is cheaper than the find of the first is of interest.
+        for by_drift in [false, true] {
+            let ceiling = outcome.found.as_ref().map_or(task.ceiling, |&(total, _)| total);
+            let task = Task { starts: task.starts.clone(), ceiling, ..*task };
+            let mut search = Search::new(problem, &task, by_drift);
+            let round = best_first(&mut search, automaton);
+            outcome.labels += search.labels.len();
+            if let Some((total, at)) = round.best {
+                outcome.found = Some((total, search.solution(automaton, at)));
+            }
+            let total = outcome.found.as_ref().map_or(task.ceiling, |&(total, _)| total);
+            outcome.drifted = search.drifted_at < total;
+            let settled = round.unsettled == NEVER;
+            if settled && (by_drift || !outcome.drifted) {
+                outcome.floor = outcome.found.as_ref().map_or(NEVER, |&(total, _)| total);
+                return outcome;
+            }
+            // What was dropped in the first round may have stood for a run that costs as little.
+            let floor = if by_drift { round.unsettled } else { round.unsettled.min(search.drifted_at) };
+            outcome.floor = outcome.floor.max(floor);
+            if !settled {
+                break;
             }
         }
     }
-    BEAMS
-        .iter()
-        .find_map(|&width| {
+    if outcome.found.is_none() {
+        outcome.found = BEAMS.iter().find_map(|&width| {
             let mut narrow = Search::new(problem, task, false);
-            let at = beam(&mut narrow, automaton, width)?;
-            let solution = narrow.solution(automaton, at, 0);
-            Some(Solution { gap: solution.cost.saturating_sub(floor), ..solution })
-        })
-        .ok_or(Unsolved::TooLarge { labels })
+            let (total, at) = beam(&mut narrow, automaton, width)?;
+            Some((total, narrow.solution(automaton, at)))
+        });
+    }
+    outcome
 }
 
-/// A*: the cheapest complete label, none if there is none, or the least unsettled estimate when the labels
-/// ran out.
-fn best_first(search: &mut Search<'_>, automaton: &mut Automaton<'_>) -> Result<Option<u32>, Cost> {
+/// What A* came to.
+struct Round {
+    /// The cheapest complete label, with its whole cost.
+    best: Option<(Cost, u32)>,
+    /// The least estimate that was not settled when the labels ran out; [`NEVER`] if they did not.
+    unsettled: Cost,
+}
+
+fn best_first(search: &mut Search<'_>, automaton: &mut Automaton<'_>) -> Round {
     search.start(automaton);
     let mut best: Option<(Cost, u32)> = None;
     while let Some((estimate, at)) = search.pop() {
         if best.is_some_and(|(cost, _)| cost <= estimate) {
             break;
         }
-        if search.labels.len() > search.problem.label_limit || automaton.len() > STATE_LIMIT {
-            return Err(estimate);
+        if search.labels.len() > search.task.label_limit || automaton.len() > STATE_LIMIT {
+            return Round { best, unsettled: estimate };
         }
         if search.labels.is_superseded(at) {
             continue;
@@ -102,11 +126,11 @@ fn best_first(search: &mut Search<'_>, automaton: &mut Automaton<'_>) -> Result<
         }
         search.extend(automaton, at);
     }
-    Ok(best.map(|(_, at)| at))
+    Round { best, unsettled: NEVER }
 }
 
 /// The cheapest complete label among runs that at each length were among the `width` most promising.
-fn beam(search: &mut Search<'_>, automaton: &mut Automaton<'_>, width: usize) -> Option<u32> {
+fn beam(search: &mut Search<'_>, automaton: &mut Automaton<'_>, width: usize) -> Option<(Cost, u32)> {
     search.start(automaton);
     let mut best: Option<(Cost, u32)> = None;
     let mut layers: Vec<Vec<(Cost, u32)>> = vec![Vec::new(); *search.problem.window.end() as usize + 1];
@@ -131,17 +155,17 @@ fn beam(search: &mut Search<'_>, automaton: &mut Automaton<'_>, width: usize) ->
             search.extend(automaton, at);
         }
     }
-    best.map(|(_, at)| at)
+    best
 }
 
 impl Search<'_> {
-    fn solution(&self, automaton: &Automaton<'_>, at: u32, gap: Cost) -> Solution {
+    fn solution(&self, automaton: &Automaton<'_>, at: u32) -> Solution {
         let sequence = Labels::sequence(&self.labels, at);
         let stop = sequence.last().and_then(|&last| self.task.stop[last]).unwrap_or(0);
         Solution {
             cost: self.labels.get(at).cost + stop,
             sequence,
-            gap,
+            gap: 0,
             labels: self.labels.len(),
             states: automaton.len(),
         }

@@ -25,7 +25,7 @@ pub struct Goal {
     pub components: Option<u32>,
     /// Holes; the inside of a closed ring counts as one.
     pub holes: Option<u32>,
-    /// Whether some component must wind all the way round (rings only).
+    /// Whether some component must wind all the way round, which none does in an open run.
     pub closed_pattern: bool,
 }
 
@@ -154,6 +154,9 @@ impl<'a> Automaton<'a> {
 
     /// The state of `run`, which has `holes` more than its Euler characteristic says.
     fn enter(&mut self, run: &Descriptor, holes: u32) -> Option<StateId> {
+        if self.goal.closed_pattern && self.shape == Shape::Open {
+            return None;
+        }
         let holes = holes + run.holes();
         if self.goal.holes.is_some_and(|most| holes > most) {
             return None;

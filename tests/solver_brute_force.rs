@@ -1,0 +1,301 @@
+//! The search against plain enumeration: every sequence of a small catalogue is built, its descriptors are
+//! joined one by one, and the best one that meets the constraints must cost what the solver's costs.
+//!
+//! Excluded: the variety term, which the solver does not promise to optimise.
+
+use std::collections::BTreeSet;
+
+use openwork::pieces::{Catalogue, CostWeights};
+use openwork::planar::{FillRule, Grid, GridPoint, Region, Tolerances};
+use openwork::reeb::{ReebGraph, Slicing, SlicingRule};
+use openwork::solver::{Problem, Refusal, Step, Unsolved, explain, solve};
+use openwork::topology::{Descriptor, Goal, Shape, Topology};
+use proptest::prelude::*;
+
+/// A catalogue in whole numbers.
+#[derive(Debug, Clone)]
+struct Pieces {
+    descriptors: Vec<Descriptor>,
+    steps: Vec<Vec<Step>>,
+}
+
+/// What is asked of it.
+#[derive(Debug, Clone)]
+struct Request {
+    shape: Shape,
+    widths: Vec<u32>,
+    begin: Vec<u64>,
+    end: Vec<u64>,
+    window: (u32, u32),
+    drift_limit: i32,
+    goals: Vec<Goal>,
+}
+
+/// Steps of an enumeration after which a case is given up as too large to be small.
+const PATIENCE: usize = 120_000;
+/// Lengths beyond the window at which refusals are checked.
+const LONGEST: u32 = 12;
+
+fn problem<'a>(pieces: &'a Pieces, request: &Request) -> Problem<'a> {
+    let n = pieces.descriptors.len();
+    let ends = |costs: &[u64], side: fn(&Descriptor) -> &[u16]| {
+        (0..n).map(|p| side(&pieces.descriptors[p]).is_empty().then_some(costs[p])).collect::<Vec<_>>()
+    };
+    Problem {
+        shape: request.shape,
+        descriptors: &pieces.descriptors,
+        widths: request.widths[..n].to_vec(),
+        steps: pieces.steps.clone(),
+        begin: ends(&request.begin, Descriptor::left),
+        end: ends(&request.end, Descriptor::right),
+        window: request.window.0..=request.window.1,
+        drift_limit: request.drift_limit,
+        variety: None,
+        label_limit: 1_000_000,
+    }
+}
+
+/// A sequence that may be made, of whatever topology.
+#[derive(Debug, Clone, PartialEq)]
+struct Made {
+    length: u32,
+    cost: u64,
+    topology: Topology,
+    /// Whether it stays in the band all along.
+    is_in_band: bool,
+}
+
+/// What one sequence makes; `None` when it is no sequence of the problem. Rings count from a narrowest cut only.
+fn make(problem: &Problem<'_>, sequence: &[usize]) -> Option<Made> {
+    let (&first, &last) = (sequence.first()?, sequence.last()?);
+    let left = |p: usize| problem.descriptors[p].left().len();
+    let mut run = problem.descriptors[first].clone();
+    let (mut drift, mut is_in_band) = (0i32, true);
+    for pair in sequence.windows(2) {
+        let step = problem.steps[pair[0]].iter().find(|s| s.to == pair[1])?;
+        run = run.join(&problem.descriptors[pair[1]]).expect("portal numbers of steps match");
+        drift += step.rise;
+        is_in_band &= drift.abs() <= problem.drift_limit;
+    }
+    let topology = match problem.shape {
+        Shape::Open => run.finished()?,
+        Shape::Ring => {
+            problem.steps[last].iter().find(|s| s.to == first)?;
+            if sequence.iter().any(|&p| left(p) < left(first)) {
+                return None;
+            }
+            run.close().expect("portal numbers of steps match")
+        }
+    };
+    let length = sequence.iter().map(|&p| problem.widths[p]).sum();
+    Some(Made { length, cost: problem.cost_of(sequence)?, topology, is_in_band })
+}
+
+/// Everything that can be made up to `longest`; `None` when that is too much.
+fn enumerate(problem: &Problem<'_>, longest: u32) -> Option<Vec<Made>> {
+    let mut found = Vec::new();
+    let mut patience = PATIENCE;
+    let mut stack: Vec<(Vec<usize>, u32)> =
+        (0..problem.pieces()).map(|p| (vec![p], problem.widths[p])).collect();
+    while let Some((sequence, length)) = stack.pop() {
+        patience = patience.checked_sub(1)?;
+        let can_begin = problem.shape == Shape::Ring || problem.begin[sequence[0]].is_some();
+        if length > longest || !can_begin {
+            continue;
+        }
+        found.extend(make(problem, &sequence));
+        for step in &problem.steps[sequence[sequence.len() - 1]] {
+            let mut longer = sequence.clone();
+            longer.push(step.to);
+            stack.push((longer, length + problem.widths[step.to]));
+        }
+    }
+    Some(found)
+}
+
+/// Solves and compares with the enumeration; whether the case was small enough to.
+fn check(pieces: &Pieces, request: &Request) -> Result<bool, TestCaseError> {
+    let problem = problem(pieces, request);
+    let Some(all) = enumerate(&problem, LONGEST) else {
+        return Ok(false);
+    };
+    for &goal in &request.goals {
+        let admitted =
+            |m: &Made| problem.window.contains(&m.length) && m.is_in_band && goal.admits(m.topology);
+        let least = all.iter().filter(|m| admitted(m)).map(|m| m.cost).min();
+        match solve(&problem, goal) {
+            Ok(solution) => {
+                prop_assert_eq!(Some(solution.cost), least, "{:?} by {:?}", goal, solution);
+                prop_assert_eq!(solution.gap, 0, "{:?}", goal);
+                let made = make(&problem, &solution.sequence);
+                prop_assert!(made.as_ref().is_some_and(admitted), "{:?} made {:?}", solution, made);
+                prop_assert_eq!(made.map(|m| m.cost), Some(solution.cost));
+            }
+            Err(Unsolved::Infeasible) => {
+                prop_assert_eq!(least, None, "{:?}", goal);
+                let refusal = explain(&problem, goal, LONGEST);
+                check_refusal(&problem, goal, &all, refusal)?;
+            }
+            Err(Unsolved::TooLarge { labels }) => prop_assert!(false, "{labels} labels are not too many"),
+        }
+    }
+    Ok(true)
+}
+
+/// That a refusal is true, by its documentation.
+fn check_refusal(
+    problem: &Problem<'_>,
+    goal: Goal,
+    all: &[Made],
+    refusal: Refusal,
+) -> Result<(), TestCaseError> {
+    let in_window: Vec<&Made> = all.iter().filter(|m| problem.window.contains(&m.length)).collect();
+    let in_band: Vec<&Made> = in_window.iter().filter(|m| m.is_in_band).copied().collect();
+    let with = |goal: Goal| in_band.iter().filter(move |m| goal.admits(m.topology));
+    let is_nearest = |found: Option<u32>, wanted: Option<u32>, counts: BTreeSet<u32>| {
+        let wanted = wanted.expect("a count that is refused was asked for");
+        prop_assert!(!counts.contains(&wanted), "{} can be had", wanted);
+        let least = counts.iter().map(|c| c.abs_diff(wanted)).min();
+        let is_true = found.is_none_or(|f| counts.contains(&f));
+        prop_assert!(is_true && found.map(|f| f.abs_diff(wanted)) == least, "{:?} of {:?}", found, counts);
+        Ok(())
+    };
+    match refusal {
+        Refusal::Length { below, above } => {
+            prop_assert!(in_window.is_empty());
+            let lengths: BTreeSet<u32> = all.iter().map(|m| m.length).collect();
+            let (start, end) = (*problem.window.start(), *problem.window.end());
+            prop_assert_eq!(below, lengths.range(..start).next_back().copied());
+            prop_assert_eq!(above, lengths.range(end + 1..).next().copied());
+        }
+        Refusal::Drift => prop_assert!(!in_window.is_empty() && in_band.is_empty()),
+        Refusal::ClosedPattern => {
+            prop_assert!(goal.closed_pattern && !in_band.is_empty());
+            prop_assert!(in_band.iter().all(|m| !m.topology.closed_pattern));
+        }
+        Refusal::Components { nearest } => {
+            let others = Goal { components: None, holes: None, ..goal };
+            let counts = with(others).map(|m| m.topology.components).collect();
+            is_nearest(nearest, goal.components, counts)?;
+        }
+        Refusal::Holes { nearest } => {
+            let others = Goal { components: None, holes: None, ..goal };
+            let counts = with(others).map(|m| m.topology.holes).collect();
+            is_nearest(nearest, goal.holes, counts)?;
+        }
+        Refusal::Both { nearest_holes } => {
+            let without = Goal { components: None, ..goal };
+            prop_assert!(with(without).next().is_some());
+            let counts: BTreeSet<u32> =
+                with(Goal { holes: None, ..goal }).map(|m| m.topology.holes).collect();
+            prop_assert!(!counts.is_empty());
+            is_nearest(nearest_holes, goal.holes, counts)?;
+        }
+    }
+    Ok(())
+}
+
+fn goals() -> impl Strategy<Value = Vec<Goal>> {
+    let count = || prop_oneof![3 => Just(None), 2 => Just(Some(1)), 3 => (0u32..4).prop_map(Some)];
+    let holes = || prop_oneof![3 => Just(None), 2 => Just(Some(0)), 3 => (0u32..4).prop_map(Some)];
+    let goal = (count(), holes(), prop::bool::weighted(0.15));
+    prop::collection::vec(
+        goal.prop_map(|(components, holes, closed_pattern)| Goal { components, holes, closed_pattern }),
+        4,
+    )
+}
+
+const MOST: usize = 6;
+
+fn request() -> impl Strategy<Value = Request> {
+    let costs = || prop::collection::vec(0u64..5, MOST);
+    let widths = prop_oneof![prop::collection::vec(1u32..=3, MOST), prop::collection::vec(2u32..=3, MOST),];
+    let limit = prop_oneof![2 => 0i32..3, 2 => 2i32..6, 1 => Just(1000)];
+    (any::<bool>(), widths, costs(), costs(), (3u32..=12, 0u32..4), limit, goals()).prop_map(
+        |(is_ring, widths, begin, end, (low, span), drift_limit, goals)| Request {
+            shape: if is_ring { Shape::Ring } else { Shape::Open },
+            widths,
+            begin,
+            end,
+            window: (low, (low + span).min(LONGEST)),
+            drift_limit,
+            goals,
+        },
+    )
+}
+
+/// Pieces whose portals are connected in any way, also in ways that the plane does not allow. The first has
+/// none on the left and the last none on the right.
+fn free_pieces() -> impl Strategy<Value = Pieces> {
+    let labels = || prop::collection::vec(0u32..6, 0..=3);
+    // As drawn, most pieces would have different components at all portals.
+    let piece = (labels(), labels(), 0u32..2, 0i64..2, prop_oneof![Just(1u32), Just(2), Just(6)]);
+    let join = prop::option::weighted(0.9, (0u64..9, -2i32..=2));
+    let tables = (prop::collection::vec(piece, 2..=MOST), prop::collection::vec(join, MOST * MOST));
+    (tables, 1usize..=3).prop_map(|((pieces, joins), most)| {
+        let n = pieces.len();
+        let describe =
+            |(i, (mut left, mut right, closed, holes, kinds)): (usize, (Vec<u32>, Vec<u32>, _, _, _))| {
+                left.truncate(if i == 0 { 0 } else { most });
+                right.truncate(if i + 1 == n { 0 } else { most });
+                let name = |labels: Vec<u32>| labels.into_iter().map(|l| l % kinds).collect::<Vec<_>>();
+                let (left, right) = (name(left), name(right));
+                let components = Descriptor::new(&left, &right, 0, 0).open() + closed;
+                // Holes need ink.
+                let holes = if components == 0 { 0 } else { holes };
+                Descriptor::new(&left, &right, closed, i64::from(components) - holes)
+            };
+        let descriptors: Vec<Descriptor> = pieces.into_iter().enumerate().map(describe).collect();
+        let step = |from: usize, to: usize| {
+            let fits = descriptors[from].right().len() == descriptors[to].left().len();
+            let (cost, rise) = joins[from * MOST + to].filter(|_| fits)?;
+            Some(Step { to, cost, rise })
+        };
+        let steps = (0..n).map(|a| (0..n).filter_map(|b| step(a, b)).collect()).collect();
+        Pieces { descriptors, steps }
+    })
+}
+
+/// Pieces cut from overlapping boxes.
+fn drawn_pieces() -> impl Strategy<Value = Pieces> {
+    let boxes = prop::collection::vec((0i64..60, 0i64..30, 4i64..40, 2i64..20), 2..9);
+    (boxes, 1usize..MOST).prop_filter_map("boxes that cancel out", |(boxes, lines)| {
+        let step = 100_000_000;
+        let paths: Vec<Vec<GridPoint>> = boxes
+            .iter()
+            .map(|&(x, y, w, h)| {
+                [(x, y), (x + w, y), (x + w, y + h), (x, y + h)]
+                    .map(|(x, y)| GridPoint::new(x * step, y * step))
+                    .to_vec()
+            })
+            .collect();
+        let region = Region::fill(Grid::for_extent(100.0).ok()?, &paths, FillRule::EvenOdd);
+        let rule = SlicingRule::Uniform { lines };
+        let slicing = Slicing::new(&region, &ReebGraph::new(&region), rule, &Tolerances::default()).ok()?;
+        let catalogue = Catalogue::new(&region, &slicing.cuts, &CostWeights::default());
+        let join = |j: &openwork::pieces::Join| Step {
+            to: j.to,
+            cost: (j.cost * 10.0).round() as u64,
+            rise: j.rise_mm.round() as i32,
+        };
+        let steps = catalogue.joins().iter().map(|joins| joins.iter().map(join).collect()).collect();
+        let pieces = Pieces { descriptors: catalogue.descriptors().to_vec(), steps };
+        (pieces.descriptors.len() > 1).then_some(pieces)
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
+
+    #[test]
+    fn free_pieces_are_sequenced_as_well_as_by_enumeration(pieces in free_pieces(), request in request()) {
+        let is_small = check(&pieces, &request)?;
+        prop_assume!(is_small);
+    }
+
+    #[test]
+    fn drawn_pieces_are_sequenced_as_well_as_by_enumeration(pieces in drawn_pieces(), request in request()) {
+        let is_small = check(&pieces, &request)?;
+        prop_assume!(is_small);
+    }
+}
