@@ -13,8 +13,13 @@
 
 use super::bound::{Bound, NEVER};
 use super::problem::{Cost, Problem, Solution, Unsolved};
-use super::search::{Outcome, Task, solve_task};
+use super::search::{BEAMS, Outcome, Task, solve_task};
 use crate::topology::Automaton;
+
+/// No first piece may use up more than one part in so many of the labels, lest the others are never looked at.
+const SHARE: usize = 4;
+/// Beams give up at so many times the labels of A*.
+const BEAM_LABELS: usize = 12;
 
 /// The cheapest ring.
 pub(super) fn solve_ring(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
@@ -25,19 +30,22 @@ pub(super) fn solve_ring(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -
     portals.dedup();
     // What is broken somewhere does not go all the way round.
     portals.retain(|&m| m > 0 || !automaton.goal().closed_pattern);
-    let mut best: Option<Solution> = None;
     let mut best: Option<(Cost, Solution)> = None;
     let (mut labels, mut floor) = (0, NEVER);
-    for m in portals {
-        let mut allowed: Vec<bool> = (0..problem.pieces()).map(|p| left(p) >= m && right(p) >= m).collect();
-        let mut firsts: Vec<usize> = (0..problem.pieces()).filter(|&p| allowed[p] && left(p) == m).collect();
+    let opened = |m: usize| -> (Vec<bool>, Vec<usize>) {
+        let allowed: Vec<bool> = (0..problem.pieces()).map(|p| left(p) >= m && right(p) >= m).collect();
+        let firsts = (0..problem.pieces()).filter(|&p| allowed[p] && left(p) == m).collect();
+        (allowed, firsts)
+    };
+    for &m in &portals {
+        let (mut allowed, mut firsts) = opened(m);
         while let Some((first, estimate)) = most_promising(problem, &firsts, &allowed) {
             let ceiling = best.as_ref().map_or(NEVER, |b| b.0);
             if estimate >= ceiling {
                 break;
             }
-            let label_limit = problem.label_limit.saturating_sub(labels);
-            if label_limit == 0 && best.is_some() {
+            let left_over = problem.label_limit.saturating_sub(labels);
+            if left_over == 0 {
                 floor = floor.min(estimate);
                 break;
             }
@@ -45,8 +53,9 @@ pub(super) fn solve_ring(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -
             let bound = Bound::new(problem, &stop, &allowed);
             let mut seen = true;
             if bound.at(problem.widths[first], first) < ceiling {
-                let task =
-                    Task { starts: vec![(first, 0)], stop: &stop, bound: &bound, ceiling, label_limit };
+                let label_limit = left_over.min(problem.label_limit / SHARE);
+                let starts = vec![(first, 0)];
+                let task = Task { starts, stop: &stop, bound: &bound, ceiling, label_limit, beams: &[] };
                 let outcome: Outcome = solve_task(problem, automaton, &task);
                 labels += outcome.labels;
                 floor = floor.min(outcome.floor);
@@ -57,6 +66,9 @@ pub(super) fn solve_ring(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -
             firsts.retain(|&p| p != first);
         }
     }
+    if best.is_none() && floor != NEVER {
+        best = beams(problem, automaton, &portals, &opened, &mut labels);
+    }
     match best {
         Some((total, solution)) => {
             let gap = total.saturating_sub(floor);
@@ -65,6 +77,44 @@ pub(super) fn solve_ring(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -
         None if floor == NEVER => Err(Unsolved::Infeasible),
         None => Err(Unsolved::TooLarge { labels }),
     }
+}
+
+/// A ring for each width of the beam, from the most promising first pieces on, until one is found.
+fn beams(
+    problem: &Problem<'_>,
+    automaton: &mut Automaton<'_>,
+    portals: &[usize],
+    opened: &impl Fn(usize) -> (Vec<bool>, Vec<usize>),
+    labels: &mut usize,
+) -> Option<(Cost, Solution)> {
+    let mut tries: Vec<(Cost, usize, usize)> = Vec::new();
+    for &m in portals {
+        let (allowed, firsts) = opened(m);
+        let stop = closing_costs(problem, &firsts, &allowed);
+        let bound = Bound::new(problem, &stop, &allowed);
+        tries.extend(firsts.iter().map(|&f| (bound.at(problem.widths[f], f), m, f)));
+    }
+    tries.retain(|t| t.0 != NEVER);
+    tries.sort_unstable();
+    for width in BEAMS {
+        for &(_, m, first) in &tries {
+            if *labels > BEAM_LABELS * problem.label_limit {
+                return None;
+            }
+            let (allowed, _) = opened(m);
+            let stop = closing_costs(problem, &[first], &allowed);
+            let bound = Bound::new(problem, &stop, &allowed);
+            let starts = vec![(first, 0)];
+            let task =
+                Task { starts, stop: &stop, bound: &bound, ceiling: NEVER, label_limit: 0, beams: &[width] };
+            let outcome = solve_task(problem, automaton, &task);
+            *labels += outcome.labels;
+            if outcome.found.is_some() {
+                return outcome.found;
+            }
+        }
+    }
+    None
 }
 
 /// What closing a ring after each piece costs, when it began with the cheapest of `firsts`.

@@ -24,6 +24,8 @@ pub(super) struct Task<'t> {
     pub(super) ceiling: Cost,
     /// Labels at which A* gives up; with 0 there is only the beam.
     pub(super) label_limit: usize,
+    /// Labels kept at each length by the beams that are tried, one after the other, when A* found nothing.
+    pub(super) beams: &'t [usize],
 }
 
 /// What a search found.
@@ -42,7 +44,7 @@ pub(super) struct Outcome {
 /// to bite, and a beam finds a good sequence long before A* would prove one.
 const STATE_LIMIT: usize = 20_000;
 /// Labels kept at each length by the beam; widened until a sequence is found.
-const BEAMS: [usize; 3] = [128, 1024, 8192];
+pub(super) const BEAMS: [usize; 3] = [128, 1024, 8192];
 
 /// The cheapest open run.
 pub(super) fn solve_open(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
@@ -50,7 +52,7 @@ pub(super) fn solve_open(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -
     let starts =
         problem.begin.iter().enumerate().filter_map(|(piece, cost)| cost.map(|c| (piece, c))).collect();
     let label_limit = problem.label_limit;
-    let task = Task { starts, stop: &problem.end, bound: &bound, ceiling: NEVER, label_limit };
+    let task = Task { starts, stop: &problem.end, bound: &bound, ceiling: NEVER, label_limit, beams: &BEAMS };
     let Outcome { found, floor, labels, .. } = solve_task(problem, automaton, &task);
     match found {
         Some((total, solution)) => Ok(Solution { gap: total.saturating_sub(floor), labels, ..solution }),
@@ -89,9 +91,12 @@ pub(super) fn solve_task(problem: &Problem<'_>, automaton: &mut Automaton<'_>, t
         }
     }
     if outcome.found.is_none() {
-        outcome.found = BEAMS.iter().find_map(|&width| {
+        let labels = &mut outcome.labels;
+        outcome.found = task.beams.iter().find_map(|&width| {
             let mut narrow = Search::new(problem, task, false);
-            let (total, at) = beam(&mut narrow, automaton, width)?;
+            let best = beam(&mut narrow, automaton, width);
+            *labels += narrow.labels.len();
+            let (total, at) = best?;
             Some((total, narrow.solution(automaton, at)))
         });
     }
