@@ -304,8 +304,8 @@ mod tests {
         let wanted = [("begin", 0.0), ("split", 10.0), ("merge", 30.0), ("end", 40.0), ("begin", 46.0)];
         assert_eq!(events[..5], wanted);
         assert!(found.critical_points.iter().all(|p| p.makes_cuts));
-        assert_eq!(found.cuts.iter().map(|c| c.portals).collect::<Vec<_>>(), [1, 2, 1, 0, 1]);
-        assert_eq!(found.cuts[3].narrowest_portal_mm, None);
+        assert_eq!(found.cuts.iter().map(|c| c.portals).collect::<Vec<_>>(), [1, 2, 2, 2, 1, 0, 1]);
+        assert_eq!(found.cuts[5].narrowest_portal_mm, None);
         let ends = &found.cuts[0].endpoints_mm;
         assert!(ends.len() == 2 && near(ends[0], 11.0) && near(ends[1], 1.0), "{ends:?}");
         let middle = &found.pieces[1].descriptor;

@@ -49,8 +49,11 @@ impl fmt::Display for Analysis {
         for piece in &self.pieces {
             row(f, piece)?;
         }
-        for (i, note) in self.notes.iter().enumerate() {
-            write!(f, "{}note: {note}\n", if i == 0 { "\n" } else { "" })?;
+        if !self.notes.is_empty() {
+            writeln!(f)?;
+        }
+        for note in &self.notes {
+            writeln!(f, "note: {note}")?;
         }
         Ok(())
     }
@@ -100,7 +103,7 @@ mod tests {
         assert!(text.contains("6 critical points: 2 begin, 2 end, 1 split, 1 merge; 0 below"), "{text}");
         assert!(text.contains("1 > 2"), "{text}");
         assert!(text.contains("  0 | 0 0\n"), "{text}");
-        assert_eq!(text.lines().filter(|l| l.contains(" | ")).count(), 1 + 6);
+        assert_eq!(text.lines().filter(|l| l.contains(" | ")).count(), 1 + 8);
         let uniform = analysis(Some(SlicingRule::Uniform { lines: 3 })).to_string();
         assert!(uniform.contains("3 cuts, equally spaced"), "{uniform}");
     }

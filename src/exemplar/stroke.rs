@@ -15,6 +15,9 @@ use kurbo::{BezPath, Cap, Join, ParamCurve, PathEl, PathSeg, Stroke};
 /// Directions closer than this are one (in radians). Larger, and rims would have steps; smaller, and a wedge
 /// could be so thin that snapping turns it over.
 const SAME_DIRECTION: f64 = 1e-4;
+/// A turn between segments below this is a smooth curve drawn with rounded numbers (in radians). Larger, and
+/// blunt corners lose their join; smaller, and the two tangents, which lie beside the chords, make notches.
+const SMOOTH_TURN: f64 = 0.02;
 /// Two directions this close to opposite leave no corner to be bevelled.
 const OPPOSITE: f64 = 1e-6;
 /// Chords shorter than this part of the pen's radius are left out: they would be narrower than what
@@ -57,11 +60,19 @@ struct Leg {
     /// Unit tangents at its ends.
     leaving: DVec2,
     reaching: DVec2,
+    /// Whether there is a corner or a flat cap at its ends, which needs the tangent and not the chord.
+    is_sharp: [bool; 2],
 }
 
 impl Leg {
     fn end(&self) -> DVec2 {
         self.points[self.points.len() - 1]
+    }
+
+    /// The direction in which the pen has finished the leg.
+    fn last_direction(&self) -> DVec2 {
+        let chord = self.end() - self.points[self.points.len() - 2];
+        if self.is_sharp[1] { self.reaching } else { chord.try_normalize().unwrap_or(self.reaching) }
     }
 }
 
@@ -85,29 +96,33 @@ impl Pen<'_> {
             let from = legs.last().map(Leg::end);
             legs.extend(self.leg(&segment, from));
         }
-        let Some(first) = legs.first() else {
+        let n = legs.len();
+        if n == 0 {
             return self.dot(elements);
-        };
-        let (begin, leaving) = (first.points[0], first.leaving);
+        }
         let closed = matches!(elements.last(), Some(PathEl::ClosePath));
+        for i in 0..n {
+            let next = (i + 1) % n;
+            let sharp =
+                if closed || next > 0 { self.is_corner(legs[i].reaching, legs[next].leaving) } else { true };
+            (legs[i].is_sharp[1], legs[next].is_sharp[0]) = (sharp, sharp);
+        }
+        let (begin, leaving) = (legs[0].points[0], legs[0].leaving);
         if closed {
-            if let Some(last) = legs.last_mut() {
-                // Where the last segments were too short, the line still closes where it began.
-                let end = last.points.len() - 1;
-                last.points[end] = begin;
-                self.direction = last.reaching;
-            }
+            // Where the last segments were too short, the line still closes where it began.
+            let end = legs[n - 1].points.len() - 1;
+            legs[n - 1].points[end] = begin;
+            self.direction = legs[n - 1].last_direction();
         } else {
             self.direction = -leaving;
             self.cap(begin, self.style.start_cap);
             self.direction = leaving;
         }
         for leg in &legs {
-            self.turn(leg.points[0], leg.leaving, self.style.join);
             self.sweep(leg);
         }
-        if let Some(last) = legs.last().filter(|_| !closed) {
-            self.cap(last.end(), self.style.end_cap);
+        if !closed {
+            self.cap(legs[n - 1].end(), self.style.end_cap);
         }
     }
 
@@ -130,24 +145,32 @@ impl Pen<'_> {
         }
         let leaving = control.iter().find_map(|&p| (p - control[0]).try_normalize())?;
         let reaching = control.iter().rev().find_map(|&p| (control[3] - p).try_normalize())?;
-        Some(Leg { points, leaving, reaching })
+        Some(Leg { points, leaving, reaching, is_sharp: [true; 2] })
     }
 
-    /// Strips along the chords of a leg and wedges between them, from its first tangent to its last.
+    /// Strips along the chords of a leg and wedges between them, with the join before it.
     fn sweep(&mut self, leg: &Leg) {
+        if leg.is_sharp[0] {
+            self.turn(leg.points[0], leg.leaving, self.style.join);
+        }
+        let last = leg.last_direction();
         let chords = leg.points.len() - 1;
         for (i, chord) in leg.points.windows(2).enumerate() {
             let Some(along) = (chord[1] - chord[0]).try_normalize() else { continue };
             self.turn(chord[0], along, Join::Round);
             let begin = self.across();
-            let is_last = i + 1 == chords;
-            self.direction = if is_last && self.is_same(along, leg.reaching) { leg.reaching } else { along };
+            self.direction = if i + 1 == chords && self.is_same(along, last) { last } else { along };
             let end = self.across();
             let [from, to] = [chord[0], chord[1]];
             self.push(vec![from - begin, to - end, to, to + end, from + begin, from]);
         }
-        self.turn(leg.points[chords], leg.reaching, Join::Round);
-        self.direction = leg.reaching;
+        self.turn(leg.end(), last, Join::Round);
+        self.direction = last;
+    }
+
+    /// Whether a join is seen where the line turns from `reaching` to `leaving`.
+    fn is_corner(&self, reaching: DVec2, leaving: DVec2) -> bool {
+        self.style.join != Join::Round && reaching.angle_to(leaving).abs() > SMOOTH_TURN
     }
 
     /// Turns the pen at `at` and fills the outer side of the turn.

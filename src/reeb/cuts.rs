@@ -2,8 +2,12 @@
 //!
 //! Between each two neighbouring events that matter, one cut: where the narrowest portal and gap are widest
 //! and the contours cross the line most squarely (a slanted crossing makes a kink when pieces of other
-//! slants follow). Zhou 2014 §5.2 takes the middle instead. A cut whose narrowest portal is under the
-//! minimum feature is dropped (§5.2.1); uniform slicing (§5.1) takes equally spaced lines.
+//! slants follow). Zhou 2014 §5.2 takes the middle instead. Where no event is for long, there are several: three
+//! strands without an event would else be one piece, which nothing can follow. Cuts too close for a piece
+//! between them are thinned out. A cut whose narrowest portal is under the minimum feature is dropped (§5.2.1);
+//! uniform slicing (§5.1) takes equally spaced lines.
+
+use std::cmp::Ordering;
 
 use thiserror::Error;
 
@@ -115,6 +119,11 @@ const CANDIDATES: i64 = 24;
 const LEAST_SQUARENESS: f64 = 0.2;
 /// Portals closer than this part of the exemplar's height are not told apart, and no cut is placed there.
 const SEPARATION: f64 = 1e-6;
+/// Where no event is for long, there is a cut for every such part of the exemplar's height. More, and
+/// sequences of short equal pieces look mechanical; fewer, and strands without events cannot be cut to length.
+const LONGEST_PIECE: f64 = 0.5;
+/// Cuts that share an interval keep this part of their room clear at either end, so that they stay apart.
+const CLEARANCE: f64 = 1.0 / 6.0;
 
 impl Slicing {
     /// The cuts of `region` by `rule`.
@@ -133,6 +142,7 @@ impl Slicing {
         let grid = region.grid();
         let sections = CrossSections::new(region);
         let (left, right) = (grid.steps(low.x), grid.steps(high.x));
+        let mut shortest = 0;
         let intervals = match rule {
             SlicingRule::Uniform { lines } => uniform_intervals(lines, left, right)?,
             SlicingRule::Reeb { persistence_mm } => {
@@ -144,12 +154,14 @@ impl Slicing {
                         wanted,
                     });
                 }
-                event_intervals(reeb, grid.steps(persistence_mm).max(1))
+                shortest = grid.steps(persistence_mm).max(1);
+                event_intervals(reeb, shortest, grid.steps(LONGEST_PIECE * (high.y - low.y)).max(1))
             }
         };
         let mut chosen = Self { cuts: Vec::new(), dropped: Vec::new() };
         let separation = SEPARATION * (high.y - low.y);
-        for best in best_cuts(&sections, &intervals, separation) {
+        let limits = Limits { separation, min_feature_mm: tolerances.min_feature_mm() };
+        for best in spread(best_cuts(&sections, &intervals, limits), (left, right), shortest) {
             let portal_mm = best.narrowest_portal_mm();
             if portal_mm < tolerances.min_feature_mm() {
                 chosen.dropped.push(CutDropped { x_mm: grid.mm(best.x), portal_mm });
@@ -191,7 +203,7 @@ fn uniform_intervals(lines: usize, left: i64, right: i64) -> Result<Vec<Interval
         .collect())
 }
 
-fn event_intervals(reeb: &ReebGraph, threshold: i64) -> Vec<Interval> {
+fn event_intervals(reeb: &ReebGraph, threshold: i64, longest: i64) -> Vec<Interval> {
     let spans = persistence(reeb);
     let mut xs: Vec<i64> = reeb
         .points()
@@ -202,15 +214,32 @@ fn event_intervals(reeb: &ReebGraph, threshold: i64) -> Vec<Interval> {
     xs.sort_unstable();
     xs.windows(2)
         .filter(|pair| pair[1] - pair[0] >= threshold.max(8))
-        .map(|pair| {
+        .flat_map(|pair| {
             let (low, high) = (pair[0], pair[1]);
-            let tries = (1..CANDIDATES).map(|k| low + (high - low) * k / CANDIDATES).collect();
+            let cuts = ((high - low) / longest).max(1);
+            (0..cuts)
+                .map(move |k| (low + (high - low) * k / cuts, low + (high - low) * (k + 1) / cuts, cuts > 1))
+        })
+        .map(|(low, high, shared)| {
+            let clear = if shared { ((high - low) as f64 * CLEARANCE) as i64 } else { 0 };
+            let (first, room) = (low + clear, high - low - 2 * clear);
+            let tries = (1..CANDIDATES).map(|k| first + room * k / CANDIDATES).collect();
             Interval { low, high, tries }
         })
         .collect()
 }
 
-fn best_cuts(sections: &CrossSections<'_>, intervals: &[Interval], separation: f64) -> Vec<Cut> {
+/// What a cut must keep to.
+#[derive(Clone, Copy)]
+struct Limits {
+    /// Crossings closer than this are not told apart.
+    separation: f64,
+    /// A cut through thinner ink will be dropped, so any other is better.
+    min_feature_mm: f64,
+}
+
+/// The best cut of each interval that has one, ascending, with its merit.
+fn best_cuts(sections: &CrossSections<'_>, intervals: &[Interval], limits: Limits) -> Vec<(Cut, Merit)> {
     let mut xs = Vec::new();
     for interval in intervals {
         let free =
@@ -226,26 +255,135 @@ fn best_cuts(sections: &CrossSections<'_>, intervals: &[Interval], separation: f
         let range = xs.partition_point(|&x| x <= interval.low)..xs.partition_point(|&x| x < interval.high);
         let middle = (interval.low + interval.high) / 2;
         let best = range
-            .filter_map(|i| cuts[i].as_ref().map(|cut| (i, score(&cut.crossings), (cut.x - middle).abs())))
-            .filter(|&(_, score, _)| score > separation)
-            .max_by(|a, b| a.1.total_cmp(&b.1).then(b.2.cmp(&a.2)));
-        if let Some((i, ..)) = best {
-            chosen.extend(cuts[i].take());
+            .filter_map(|i| {
+                let cut = cuts[i].as_ref()?;
+                Some((i, Merit::new(cut, limits)?, (cut.x - middle).abs()))
+            })
+            .max_by(|a, b| a.1.order(&b.1).then(b.2.cmp(&a.2)));
+        if let Some((i, merit, _)) = best {
+            chosen.extend(cuts[i].take().map(|cut| (cut, merit)));
         }
     }
     chosen
 }
 
-/// How good a cut is, in millimetres: the narrowest portal or gap, less where contours cross at a slant.
+/// Leaves out the worse of two cuts closer than `shortest`, and cuts so close to an end of the exemplar: what
+/// lies between is too narrow to be a piece.
+fn spread(cuts: Vec<(Cut, Merit)>, (left, right): (i64, i64), shortest: i64) -> Vec<Cut> {
+    let mut kept: Vec<(Cut, Merit)> = Vec::with_capacity(cuts.len());
+    for (cut, merit) in cuts {
+        match kept.last() {
+            _ if (cut.x - left).min(right - cut.x) < shortest => {}
+            Some((last, better)) if cut.x - last.x < shortest => {
+                if merit.order(better).is_gt() {
+                    kept.pop();
+                    kept.push((cut, merit));
+                }
+            }
+            _ => kept.push((cut, merit)),
+        }
+    }
+    kept.into_iter().map(|(cut, _)| cut).collect()
+}
+
+/// How good a cut is.
+#[derive(Clone, Copy)]
+struct Merit {
+    is_thick_enough: bool,
+    score: f64,
+}
+
+impl Merit {
+    /// `None` where there can be no cut.
+    fn new(cut: &Cut, limits: Limits) -> Option<Self> {
+        let crossings = &cut.crossings;
+        let apart = crossings.windows(2).all(|w| w[0].y_mm - w[1].y_mm > limits.separation);
+        let square = crossings.iter().all(|c| c.tangent.x >= LEAST_SQUARENESS);
+        let is_thick_enough = cut.narrowest_portal_mm() >= limits.min_feature_mm;
+        (apart && square).then(|| Self { is_thick_enough, score: score(crossings) })
+    }
+
+    fn order(&self, other: &Self) -> Ordering {
+        self.is_thick_enough.cmp(&other.is_thick_enough).then(self.score.total_cmp(&other.score))
+    }
+}
+
+/// How good a cut is: the thickness of the thinnest portal or gap, less where contours cross at a slant.
+///
+/// Thickness is measured across the strand. Along the cut, a strand that runs beside it would pass for a thick
+/// one, and cuts would be drawn to the places that are worst for them. Its root counts, as a slant shows more
+/// at a seam than a strand that is a little thinner.
 fn score(crossings: &[Crossing]) -> f64 {
     if crossings.is_empty() {
         return f64::MAX;
     }
-    if crossings.iter().any(|c| c.tangent.x < LEAST_SQUARENESS) {
-        return 0.0;
-    }
-    let narrowest = crossings.windows(2).map(|w| w[0].y_mm - w[1].y_mm).fold(f64::INFINITY, f64::min);
-    let squareness = crossings.iter().map(|c| c.tangent.x).sum::<f64>() / crossings.len() as f64;
+    let thickness = |w: &[Crossing]| (w[0].y_mm - w[1].y_mm) * w[0].tangent.x.min(w[1].tangent.x);
+    let thinnest = crossings.windows(2).map(thickness).fold(f64::INFINITY, f64::min);
+    let mean = crossings.iter().map(|c| c.tangent.x).sum::<f64>() / crossings.len() as f64;
     let worst = crossings.iter().map(|c| c.tangent.x).fold(1.0, f64::min);
-    narrowest * squareness * (0.2 + 0.8 * worst)
+    thinnest.sqrt() * mean * (0.2 + 0.8 * worst)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::planar::{FillRule, Grid, GridPoint};
+
+    /// The unit of the drawings: a millimetre in steps of their grid.
+    const MM: i64 = 1 << 26;
+
+    fn region(paths: &[&[(i64, i64)]]) -> Region {
+        let paths: Vec<Vec<GridPoint>> =
+            paths.iter().map(|p| p.iter().map(|&(x, y)| GridPoint::new(x * MM, y * MM)).collect()).collect();
+        Region::fill(Grid::for_extent(128.0).unwrap(), &paths, FillRule::EvenOdd)
+    }
+
+    fn cuts(region: &Region, persistence_mm: f64, min_feature_mm: f64) -> Vec<(f64, usize)> {
+        let tolerances = Tolerances::new(0.01, min_feature_mm, 0.0).unwrap();
+        let rule = SlicingRule::Reeb { persistence_mm };
+        let found = Slicing::new(region, &ReebGraph::new(region), rule, &tolerances).unwrap();
+        found.cuts.iter().map(|c| (region.grid().mm(c.x), c.portals())).collect()
+    }
+
+    #[test]
+    fn a_strand_is_cut_where_it_is_level_and_not_where_it_is_steep() {
+        // Level, then steep and three times as tall along the cut, but no thicker.
+        let strand: &[(i64, i64)] = &[(0, 40), (0, 42), (10, 42), (20, 82), (20, 74), (11, 40)];
+        let found = cuts(&region(&[strand]), 0.2, 0.0);
+        assert!(found.iter().all(|&(x, _)| x < 10.0), "{found:?}");
+    }
+
+    #[test]
+    fn long_strands_are_cut_again_and_again() {
+        let bar = |y: i64| [(0, y), (90, y), (90, y + 2), (0, y + 2)];
+        let found = cuts(&region(&[&bar(0), &bar(6), &bar(12)]), 0.2, 0.0);
+        // 90 mm in parts of half of the height of 14 mm.
+        assert_eq!(found.len(), 12);
+        assert!(found.iter().all(|&(_, portals)| portals == 3));
+        let gaps: Vec<f64> = found.windows(2).map(|w| w[1].0 - w[0].0).collect();
+        assert!(gaps.iter().all(|&g| g > 14.0 / 6.0), "{gaps:?}");
+    }
+
+    #[test]
+    fn no_piece_is_narrower_than_the_threshold() {
+        // Steps in a bar's end and a hole close to them: events 1 mm apart.
+        let bar: &[(i64, i64)] = &[(0, 0), (60, 0), (59, 4), (60, 8), (1, 8), (2, 5)];
+        let hole: &[(i64, i64)] = &[(3, 6), (5, 7), (4, 5)];
+        let region = region(&[bar, hole]);
+        for persistence_mm in [0.5, 0.9, 1.9] {
+            let found = cuts(&region, persistence_mm, 0.0);
+            let edges: Vec<f64> = [0.0].into_iter().chain(found.iter().map(|c| c.0)).chain([60.0]).collect();
+            assert!(edges.windows(2).all(|w| w[1] - w[0] >= persistence_mm), "{edges:?}");
+        }
+    }
+
+    #[test]
+    fn ink_that_is_thick_enough_is_cut_rather_than_ink_that_is_square() {
+        // Level and 1 mm thick on the left, sloping and at least 2 mm thick on the right.
+        let strand: &[(i64, i64)] = &[(0, 20), (0, 21), (9, 21), (19, 31), (19, 26), (10, 20)];
+        let thin = cuts(&region(&[strand]), 0.2, 0.0);
+        let thick = cuts(&region(&[strand]), 0.2, 1.5);
+        assert!(thin.iter().any(|c| c.0 < 9.0) && thick.iter().all(|c| c.0 > 9.0), "{thin:?} {thick:?}");
+        assert!(!thick.is_empty());
+    }
 }
