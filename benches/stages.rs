@@ -64,10 +64,11 @@ fn read(exemplar: &str) -> Exemplar {
 }
 
 fn slice(region: &Region) -> Catalogue {
+    let (region, _) = region.without_specks(CHORD_MM * CHORD_MM);
     let (low, high) = region.bounds_mm().expect("the fixtures have ink");
     let rule = SlicingRule::reeb_for_width(high.x - low.x);
-    let slicing = Slicing::new(region, &ReebGraph::new(region), rule, &Tolerances::default());
-    Catalogue::new(region, &slicing.expect("the fixtures can be cut").cuts, &CostWeights::default())
+    let slicing = Slicing::new(&region, &ReebGraph::new(&region), rule, &Tolerances::default());
+    Catalogue::new(&region, &slicing.expect("the fixtures can be cut").cuts, &CostWeights::default())
 }
 
 fn catalogue(exemplar: &str) -> Catalogue {
@@ -89,8 +90,7 @@ fn solve(catalogue: &Catalogue, shape: Shape, length_mm: f64) -> Plan {
 }
 
 fn fit(catalogue: &Catalogue, plan: &Plan, length_mm: f64) -> Outline {
-    let options =
-        FitOptions { length_mm, height_mm: HEIGHT_MM, is_ring: true, chord_mm: 0.125 * CHORD_MM };
+    let options = FitOptions { length_mm, height_mm: HEIGHT_MM, is_ring: true, chord_mm: 0.125 * CHORD_MM };
     Outline::new(catalogue, &plan.sequence, &options).expect("a plan is a run of the catalogue")
 }
 
@@ -111,10 +111,7 @@ fn map(outline: &Outline, length_mm: f64) -> Region {
 
 fn builder(case: Case) -> BandBuilder {
     let along = CurveSpec::Circle { diameter_mm: case.length_mm / PI };
-    BandBuilder::new(file(case.exemplar), along)
-        .width_mm(HEIGHT_MM)
-        .components(1)
-        .closed_pattern(true)
+    BandBuilder::new(file(case.exemplar), along).width_mm(HEIGHT_MM).components(1).closed_pattern(true)
 }
 
 fn band(case: Case) -> Band {

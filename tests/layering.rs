@@ -42,10 +42,19 @@ const ROOMS: [(&str, &[&str]); 14] = [
             "fabricate",
             "export",
             "verify",
+            "analysis",
         ],
     ),
     // Values and whole jobs, no algorithm.
-    ("cli", &["planar", "exemplar", "domain", "export", "verify", "analysis", "job"]),
+    ("cli", &["planar", "domain", "export", "verify", "analysis", "job"]),
+];
+
+/// Imports that the table does not allow and that are still there. One that is gone may not stay in this list.
+const OWED: [(&str, &str); 3] = [
+    // `analyze` puts its job together by itself; it belongs beside `extrude` in `job`.
+    ("src/cli/run.rs", "exemplar"),
+    ("src/cli/run.rs", "pieces"),
+    ("src/cli/run.rs", "reeb"),
 ];
 
 /// Libraries that only these files or folders may name.
@@ -258,6 +267,7 @@ fn heads(tokens: &[Token]) -> Vec<(String, usize)> {
 #[test]
 fn rooms_import_only_what_they_may_know() {
     let mut faults = Vec::new();
+    let mut owed: Vec<_> = OWED.to_vec();
     for file in rust_files(&root().join("src")) {
         let name = name(&file);
         let parts: Vec<&str> = name.split('/').collect();
@@ -271,12 +281,15 @@ fn rooms_import_only_what_they_may_know() {
         };
         let depth = inner.len() + usize::from(inner[inner.len() - 1] != "mod.rs");
         for (import, line) in imports(&read(&file), depth) {
-            if import != *room && !allowed.contains(&import.as_str()) {
+            let is_owed = OWED.contains(&(name.as_str(), import.as_str()));
+            owed.retain(|debt| *debt != (name.as_str(), import.as_str()));
+            if import != *room && !allowed.contains(&import.as_str()) && !is_owed {
                 faults.push(format!("{name}:{line}: {room} may not know {import}"));
             }
         }
     }
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));
+    assert!(owed.is_empty(), "no longer owed, take them out of the list: {owed:?}");
 }
 
 #[test]
@@ -325,8 +338,7 @@ fn imports_are_found_in_every_form() {
         use super::super::job;
     "##;
     let found: Vec<String> = imports(source, 2).into_iter().map(|(room, _)| room).collect();
-    let wanted =
-        ["planar", "reeb", "topology", "solver", "fit", "domain", "export", "verify", "job"];
+    let wanted = ["planar", "reeb", "topology", "solver", "fit", "domain", "export", "verify", "job"];
     assert_eq!(found, wanted);
     assert_eq!(imports("use crate as all;\nuse crate::cli;", 1), [("crate".into(), 1), ("cli".into(), 2)]);
 }
@@ -393,7 +405,7 @@ fn the_map_names_every_room() {
     let map = read(&root().join("docs/architecture.md"));
     let entries = fs::read_dir(root().join("src")).expect("src is a folder");
     for folder in entries.map(|e| e.expect("a readable folder").path()).filter(|p| p.is_dir()) {
-        let name = name(&folder);
-        assert!(map.contains(&format!("`{name}`")), "docs/architecture.md does not mention {name}");
+        let room = name(&folder).replace("src/", "");
+        assert!(map.contains(&format!("| `{room}` |")), "docs/architecture.md has no row for {room}");
     }
 }
