@@ -1,0 +1,191 @@
+//! Each stage of a band, and the whole job in process, on three exemplars and three lengths.
+//!
+//! What a stage starts from is made before its clock starts. Bands are 14 mm high and in one component, at the
+//! default tolerances; the chord error is shared among the stages as in a job. `cargo bench` runs all,
+//! `cargo bench -- solve` only the searches.
+
+use std::f64::consts::PI;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use divan::{Bencher, black_box};
+use glam::DVec2;
+use openwork::domain::{BandMap, CurveSpec, PlanarCurve};
+use openwork::exemplar::{Exemplar, Limits, ReadOptions};
+use openwork::fabricate::snapped_to_f32;
+use openwork::fit::{FitOptions, Outline};
+use openwork::job::{Band, BandBuilder, Output, Plan, PlanOptions, plan};
+use openwork::pieces::{Catalogue, CostWeights};
+use openwork::planar::{Contour, Grid, Region, Tolerances};
+use openwork::reeb::{ReebGraph, Slicing, SlicingRule};
+use openwork::topology::{Goal, Shape};
+use openwork::verify;
+
+fn main() {
+    divan::main();
+}
+
+const EXEMPLARS: [&str; 3] = ["vine", "filigree", "lace"];
+/// A ring for a finger, a bracelet of 65 mm, a belt.
+const LENGTHS_MM: [f64; 3] = [60.0, 204.0, 600.0];
+const HEIGHT_MM: f64 = 14.0;
+const CHORD_MM: f64 = Tolerances::DEFAULT_CHORD_MM;
+
+/// An exemplar and a length.
+#[derive(Clone, Copy)]
+struct Case {
+    exemplar: &'static str,
+    length_mm: f64,
+}
+
+impl fmt::Display for Case {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {} mm", self.exemplar, self.length_mm)
+    }
+}
+
+fn cases() -> impl Iterator<Item = Case> {
+    EXEMPLARS
+        .into_iter()
+        .flat_map(|exemplar| LENGTHS_MM.into_iter().map(move |length_mm| Case { exemplar, length_mm }))
+}
+
+fn file(exemplar: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("fixtures/exemplars/{exemplar}.svg"))
+}
+
+fn read(exemplar: &str) -> Exemplar {
+    let options = ReadOptions {
+        chord_mm: 0.25 * CHORD_MM,
+        target_height_mm: Some(HEIGHT_MM),
+        limits: Limits::default(),
+    };
+    Exemplar::read(&file(exemplar), &options).expect("the fixtures can be read")
+}
+
+fn slice(region: &Region) -> Catalogue {
+    let (region, _) = region.without_specks(CHORD_MM * CHORD_MM);
+    let (low, high) = region.bounds_mm().expect("the fixtures have ink");
+    let rule = SlicingRule::reeb_for_width(high.x - low.x);
+    let slicing = Slicing::new(&region, &ReebGraph::new(&region), rule, &Tolerances::default());
+    Catalogue::new(&region, &slicing.expect("the fixtures can be cut").cuts, &CostWeights::default())
+}
+
+fn catalogue(exemplar: &str) -> Catalogue {
+    slice(read(exemplar).region())
+}
+
+fn solve(catalogue: &Catalogue, shape: Shape, length_mm: f64) -> Plan {
+    let goal = Goal { components: Some(1), holes: None, closed_pattern: shape == Shape::Ring };
+    let options = PlanOptions {
+        shape,
+        length_mm,
+        height_mm: HEIGHT_MM,
+        goal,
+        weights: CostWeights::default(),
+        seed: None,
+        variety: None,
+    };
+    plan(catalogue, &options).expect("the fixtures make bands of one component")
+}
+
+fn fit(catalogue: &Catalogue, plan: &Plan, length_mm: f64) -> Outline {
+    let options = FitOptions { length_mm, height_mm: HEIGHT_MM, is_ring: true, chord_mm: 0.125 * CHORD_MM };
+    Outline::new(catalogue, &plan.sequence, &options).expect("a plan is a run of the catalogue")
+}
+
+/// The outline along a circle, on the grid that the files hold.
+fn map(outline: &Outline, length_mm: f64) -> Region {
+    let circle = PlanarCurve::circle(length_mm / PI).expect("the lengths are in range");
+    let map = BandMap::new(circle, -HEIGHT_MM / 2.0, HEIGHT_MM / 2.0).expect("the bands do not fold");
+    let grid = Grid::for_extent(length_mm).expect("the lengths are in range");
+    let middle = DVec2::splat(length_mm / 2.0);
+    let contours = outline.contours.iter().filter_map(|contour| {
+        let points = map.map_contour(&contour.points, contour.winding, 0.125 * CHORD_MM);
+        let snapped = points.iter().map(|&p| grid.snap(p + middle));
+        Contour::new(snapped.collect::<Result<_, _>>().expect("the bands lie on the grid"))
+    });
+    let region = Region::from_contours(grid, contours.collect()).expect("contours do not touch");
+    snapped_to_f32(&region).expect("a file can hold the bands")
+}
+
+fn builder(case: Case) -> BandBuilder {
+    let along = CurveSpec::Circle { diameter_mm: case.length_mm / PI };
+    BandBuilder::new(file(case.exemplar), along).width_mm(HEIGHT_MM).components(1).closed_pattern(true)
+}
+
+fn band(case: Case) -> Band {
+    let job = builder(case).build().expect("the options are in order");
+    job.run(&mut |_| {}).expect("the fixtures make bands of one component")
+}
+
+#[divan::bench(args = EXEMPLARS, sample_count = 20)]
+fn read_svg(bencher: Bencher, exemplar: &str) {
+    bencher.bench(|| read(black_box(exemplar)));
+}
+
+#[divan::bench(args = EXEMPLARS, sample_count = 20)]
+fn slice_exemplar(bencher: Bencher, exemplar: &str) {
+    let exemplar = read(exemplar);
+    bencher.bench(|| slice(black_box(exemplar.region())));
+}
+
+#[divan::bench(args = cases(), sample_count = 10)]
+fn solve_open(bencher: Bencher, case: Case) {
+    let catalogue = catalogue(case.exemplar);
+    bencher.bench(|| solve(black_box(&catalogue), Shape::Open, case.length_mm));
+}
+
+#[divan::bench(args = cases(), sample_count = 10)]
+fn solve_ring(bencher: Bencher, case: Case) {
+    let catalogue = catalogue(case.exemplar);
+    bencher.bench(|| solve(black_box(&catalogue), Shape::Ring, case.length_mm));
+}
+
+#[divan::bench(args = cases(), sample_count = 10)]
+fn fit_outline(bencher: Bencher, case: Case) {
+    let catalogue = catalogue(case.exemplar);
+    let plan = solve(&catalogue, Shape::Ring, case.length_mm);
+    bencher.bench(|| fit(black_box(&catalogue), &plan, case.length_mm));
+}
+
+#[divan::bench(args = cases(), sample_count = 10)]
+fn map_and_snap(bencher: Bencher, case: Case) {
+    let catalogue = catalogue(case.exemplar);
+    let plan = solve(&catalogue, Shape::Ring, case.length_mm);
+    let outline = fit(&catalogue, &plan, case.length_mm);
+    bencher.bench(|| map(black_box(&outline), case.length_mm));
+}
+
+#[divan::bench(args = cases(), sample_count = 10)]
+fn write_svg(bencher: Bencher, case: Case) {
+    let band = band(case);
+    bencher.bench(|| black_box(&band).svg().expect("the bands can be drawn"));
+}
+
+#[divan::bench(args = cases(), sample_count = 10)]
+fn extrude_to_stl(bencher: Bencher, case: Case) {
+    let band = band(case);
+    bencher.bench(|| black_box(&band).stl().expect("the bands are solids"));
+}
+
+#[divan::bench(args = cases(), sample_count = 10)]
+fn verify_svg(bencher: Bencher, case: Case) {
+    let drawing = band(case).svg().expect("the bands can be drawn").text;
+    let chord_mm = CHORD_MM / 4.0;
+    bencher.bench(|| verify::read_svg(black_box(drawing.as_bytes()), chord_mm).expect("it is an SVG"));
+}
+
+#[divan::bench(args = cases(), sample_count = 10)]
+fn verify_stl(bencher: Bencher, case: Case) {
+    let solid = band(case).stl().expect("the bands are solids");
+    bencher.bench(|| verify::read_stl(black_box(&solid)).expect("it is an STL"));
+}
+
+#[divan::bench(args = cases(), sample_count = 10)]
+fn whole_job(bencher: Bencher, case: Case) {
+    let folder = tempfile::tempdir().expect("a folder for the files");
+    let outputs = ["band.svg", "band.stl"]
+        .map(|name| Output::file(folder.path().join(name)).expect("the names say their formats"));
+    bencher.bench(|| band(black_box(case)).write(&outputs, None, &mut |_| {}).expect("the bands verify"));
+}
