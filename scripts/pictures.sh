@@ -11,5 +11,4 @@ band() { "$openwork" band "$@" --quiet; }
 band $exemplars/vine.svg --along circle:65mm --width 14mm --components 1 --closed-pattern -o $pictures/bracelet.png
 band $exemplars/lace.svg --along path:fixtures/curves/wave.svg --width 14mm --components 1 -o $pictures/lace.png
 band $exemplars/strokes.svg --along path:fixtures/curves/oval.svg#oval --width 14mm --components 1 --closed-pattern -o $pictures/oval.png
-band $exemplars/leaves.svg --along line:240mm --width 14mm --components 1 -o $pictures/leaves.png
 "$openwork" analyze $exemplars/vine.svg -o $pictures/analysis.png --quiet
