@@ -1,6 +1,8 @@
 //! Ornament that can be made: new pattern from one SVG ornament, with exactly the components and holes that
 //! were asked for, written as a part and counted again on the file.
 
+pub mod analysis;
+pub mod cli;
 pub mod domain;
 pub mod exemplar;
 pub mod export;
@@ -12,3 +14,4 @@ pub mod planar;
 pub mod reeb;
 pub mod solver;
 pub mod topology;
+pub mod verify;

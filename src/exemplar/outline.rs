@@ -1,17 +1,17 @@
 //! From painted curves to one region: strokes become outlines, curves become chords, all becomes one union.
 //!
-//! Curves are flattened within half of the chord error and strokes expanded within a quarter of it. Every
-//! shape is filled by its own rule; the boundaries are then united under one rule that counts windings, and
-//! only the final union is made a [`Region`], so that ink which merely touches in one path can still be joined
-//! by another. A clip is an exact intersection: inside of both is where the windings of both, less one, are
-//! positive.
+//! Curves are flattened and strokes expanded within half of the chord error. Every shape is filled by its own
+//! rule; the boundaries are then united under one rule that counts windings, and only the final union is made a
+//! [`Region`], so that ink which merely touches in one path can still be joined by another. A clip is an exact
+//! intersection: inside of both is where the windings of both, less one, are positive.
 
 use glam::DVec2;
-use kurbo::{Affine, BezPath, Cap, ParamCurveArclen, PathEl, StrokeOpts};
+use kurbo::{Affine, BezPath, ParamCurveArclen, PathEl};
 
 use super::artwork::{Artwork, Brush, Clip, Item, Shape};
 use super::error::{ExemplarFault, Place};
 use super::limits::Limits;
+use super::stroke::stroked;
 use crate::planar::{Contour, FillRule, Grid, GridError, GridPoint, Region, boundaries};
 
 /// A dash of no length becomes one of this part of the stroke's width, so that its caps have a direction.
@@ -96,23 +96,10 @@ impl Flattener<'_> {
         let to_mm = Affine::scale(self.scale) * shape.to_mm;
         let bounds = to_mm.transform_rect_bbox(shape.path.control_box());
         self.check_range(&shape.place, [bounds.x0, bounds.y0, bounds.x1, bounds.y1])?;
-        let (path, rule) = match &shape.brush {
-            Brush::Fill(rule) | Brush::FillUnderStroke(rule) => (to_mm * &shape.path, *rule),
-            Brush::Stroke(style) => {
-                (to_mm * self.outline(shape, style, largest_scale(to_mm))?, FillRule::NonZero)
-            }
+        let (polygons, rule) = match &shape.brush {
+            Brush::Fill(rule) | Brush::FillUnderStroke(rule) => (self.flat(&(to_mm * &shape.path)), *rule),
+            Brush::Stroke(style) => (self.stroked(shape, style, to_mm)?, FillRule::NonZero),
         };
-        let mut polygons: Vec<Vec<DVec2>> = Vec::new();
-        let stroked = matches!(shape.brush, Brush::Stroke(_));
-        let tolerance = if stroked { self.chord_mm / 4.0 } else { self.chord_mm / 2.0 };
-        kurbo::flatten(&path, tolerance, |el| match el {
-            PathEl::MoveTo(p) => polygons.push(vec![DVec2::new(p.x, p.y)]),
-            PathEl::LineTo(p) => {
-                polygons.last_mut().expect("a path begins with a move").push(DVec2::new(p.x, p.y))
-            }
-            PathEl::ClosePath => {}
-            PathEl::QuadTo(..) | PathEl::CurveTo(..) => unreachable!("flattening leaves lines only"),
-        });
         self.vertices += polygons.iter().map(Vec::len).sum::<usize>();
         if self.vertices > self.limits.vertices {
             return Err(ExemplarFault::TooManyVertices {
@@ -140,62 +127,68 @@ impl Flattener<'_> {
         }
     }
 
-    /// The outline of a stroke, in the shape's own units: what a transform does to a shape, it does to its
-    /// stroke.
-    fn outline(
+    fn flat(&self, path: &BezPath) -> Vec<Vec<DVec2>> {
+        let mut polygons: Vec<Vec<DVec2>> = Vec::new();
+        kurbo::flatten(path, self.chord_mm / 2.0, |el| match el {
+            PathEl::MoveTo(p) => polygons.push(vec![DVec2::new(p.x, p.y)]),
+            PathEl::LineTo(p) => {
+                polygons.last_mut().expect("a path begins with a move").push(DVec2::new(p.x, p.y))
+            }
+            PathEl::ClosePath => {}
+            PathEl::QuadTo(..) | PathEl::CurveTo(..) => unreachable!("flattening leaves lines only"),
+        });
+        polygons
+    }
+
+    /// What a stroke covers. It is made in the shape's own units: what a transform does to a shape, it does to
+    /// its stroke.
+    fn stroked(
         &mut self,
         shape: &Shape,
         style: &kurbo::Stroke,
-        scale: f64,
-    ) -> Result<BezPath, ExemplarFault> {
-        let tolerance = self.chord_mm / 4.0 / scale;
-        let mut style = style.clone();
-        let mut path = shape.path.clone();
-        if style.dash_pattern.is_empty() {
-            path = with_dots(&path, &style);
+        to_mm: Affine,
+    ) -> Result<Vec<Vec<DVec2>>, ExemplarFault> {
+        let tolerance = self.chord_mm / 2.0 / largest_scale(to_mm);
+        let dashed;
+        let path = if style.dash_pattern.is_empty() {
+            &shape.path
         } else {
-            let dot = DOT * style.width;
-            for dash in style.dash_pattern.chunks_exact_mut(2).filter(|dash| dash[0] == 0.0) {
-                // The gap gives what the dash takes, or the dots would drift.
-                (dash[0], dash[1]) = (dot, (dash[1] - dot).max(0.0));
-            }
-            let period = style.dash_pattern.iter().sum::<f64>();
-            let length: f64 = path.segments().map(|s| s.arclen(period.max(tolerance))).sum();
-            self.dashes += length / period * style.dash_pattern.len() as f64;
-            if self.dashes > self.limits.segments as f64 {
-                return Err(ExemplarFault::TooManySegments {
-                    place: shape.place.clone(),
-                    limit: self.limits.segments,
-                });
-            }
-        }
-        Ok(kurbo::stroke(path, &style, &StrokeOpts::default(), tolerance))
-    }
-}
-
-/// The path with every subpath of no length made a short line, which round and square caps turn into a dot;
-/// with butt caps SVG draws nothing there.
-fn with_dots(path: &BezPath, style: &kurbo::Stroke) -> BezPath {
-    if style.start_cap == Cap::Butt {
-        return path.clone();
-    }
-    let mut out = BezPath::with_capacity(path.elements().len());
-    for subpath in path.subpaths() {
-        let Some(PathEl::MoveTo(start)) = subpath.first() else { continue };
-        let still = |el: &PathEl| match *el {
-            PathEl::MoveTo(p) | PathEl::LineTo(p) => p == *start,
-            PathEl::QuadTo(a, p) => a == *start && p == *start,
-            PathEl::CurveTo(a, b, p) => a == *start && b == *start && p == *start,
-            PathEl::ClosePath => true,
+            dashed = self.dashed(shape, style, tolerance)?;
+            &dashed
         };
-        if subpath.len() > 1 && subpath.iter().all(still) {
-            out.move_to(*start);
-            out.line_to((start.x + DOT * style.width, start.y));
-        } else {
-            subpath.iter().for_each(|&el| out.push(el));
+        let limit = self.limits.vertices;
+        let mut polygons = stroked(path, style, tolerance, limit)
+            .ok_or_else(|| ExemplarFault::TooManyVertices { place: shape.place.clone(), limit })?;
+        for p in polygons.iter_mut().flatten() {
+            let q = to_mm * kurbo::Point::new(p.x, p.y);
+            *p = DVec2::new(q.x, q.y);
         }
+        Ok(polygons)
     }
-    out
+
+    fn dashed(
+        &mut self,
+        shape: &Shape,
+        style: &kurbo::Stroke,
+        tolerance: f64,
+    ) -> Result<BezPath, ExemplarFault> {
+        let dot = DOT * style.width;
+        let mut pattern = style.dash_pattern.clone();
+        for dash in pattern.chunks_exact_mut(2).filter(|dash| dash[0] == 0.0) {
+            // The gap gives what the dash takes, or the dots would drift.
+            (dash[0], dash[1]) = (dot, (dash[1] - dot).max(0.0));
+        }
+        let period = pattern.iter().sum::<f64>();
+        let length: f64 = shape.path.segments().map(|s| s.arclen(period.max(tolerance))).sum();
+        self.dashes += length / period * pattern.len() as f64;
+        if self.dashes > self.limits.segments as f64 {
+            return Err(ExemplarFault::TooManySegments {
+                place: shape.place.clone(),
+                limit: self.limits.segments,
+            });
+        }
+        Ok(kurbo::dash(shape.path.iter(), style.dash_offset, &pattern).collect())
+    }
 }
 
 struct Filler {

@@ -150,9 +150,15 @@ impl<'a> Placed<'a> {
         let portals: Vec<usize> =
             joins.iter().map(|&(from, _)| catalogue.pieces()[from].right_portals()).collect();
         let offsets = offsets(&rises, &portals, options.is_ring);
-        let natural: f64 = pieces.iter().map(|p| p.width_mm).sum();
+        // The ink of an open run fills the band from end to end.
+        let blank = |p: Option<&&Piece>, of: fn((f64, f64)) -> f64| match p {
+            Some(p) if !options.is_ring => of(p.blanks_mm()),
+            _ => 0.0,
+        };
+        let (before, after) = (blank(pieces.first(), |b| b.0), blank(pieces.last(), |b| b.1));
+        let natural: f64 = pieces.iter().map(|p| p.width_mm).sum::<f64>() - before - after;
         let stretch = options.length_mm / natural;
-        let mut at = 0.0;
+        let mut at = -before * stretch;
         let starts_mm = pieces
             .iter()
             .map(|p| {

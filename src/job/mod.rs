@@ -1,3 +1,43 @@
-//! Whole jobs.
+//! Whole jobs: a band along a curve, a solid from any SVG.
+//!
+//! A builder collects options, `build()` checks them by name, `run()` computes, and the result encodes itself
+//! as files that are read again and verified before they have their names. All rooms meet here, and nothing
+//! is decided here that a room could decide.
+//!
+//! ```
+//! use openwork::job::{BandBuilder, Format, Output};
+//!
+//! let folder = tempfile::tempdir()?;
+//! let svg = folder.path().join("bracelet.svg");
+//! let band = BandBuilder::new("fixtures/exemplars/vine.svg", "circle:65mm".parse()?)
+//!     .width_mm(14.0)
+//!     .components(1)
+//!     .closed_pattern(true)
+//!     .build()?
+//!     .run(&mut |_| {})?;
+//! let report = band.write(&[Output::file(&svg)?], None, &mut |_| {})?;
+//! assert_eq!((report.components, report.closed_pattern), (1, true));
+//! # assert!(svg.exists());
+//! # assert_eq!(Output::file("x.stl")?.format(), Format::Stl);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod band;
+mod builder;
+mod error;
+mod extrude;
+mod output;
+mod part;
 mod plan;
+mod refusal;
+mod report;
+mod stage;
+
+pub use band::Band;
+pub use builder::{BandBuilder, BandJob, SlicingChoice};
+pub use error::JobError;
+pub use extrude::{ExtrudeReport, extrude};
+pub use output::{Format, Output, Target};
 pub use plan::{Plan, PlanError, PlanOptions, plan};
+pub use report::{BandReport, InputReport, SeamReport, StageTime};
+pub use stage::Stage;

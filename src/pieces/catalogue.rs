@@ -82,6 +82,8 @@ pub struct Catalogue {
     height_mm: f64,
 }
 
+/// How many jumps a join costs that sets the end of the exemplar beside its beginning with a gap between them.
+const JUMPS_OF_A_BREAK: f64 = 5.0;
 /// The side of the exemplar on which costs were tuned; positions are weighed as if the exemplar had it.
 const REFERENCE_MM: f64 = 60.0;
 
@@ -147,7 +149,17 @@ fn joins_from(pieces: &[Piece], from: usize, scale: Scale, weights: &CostWeights
         .map(|to| {
             let is_natural = to == from + 1;
             let (cost, rise_mm) = join_cost(right, &pieces[to].left, scale.unit_mm, weights.alpha);
-            let jump = if is_natural { 0.0 } else { weights.jump };
+            // An empty join inside the exemplar is one of its own gaps; at its ends it is a break that the
+            // exemplar does not have.
+            let is_break = right.is_empty() && (from + 1 == pieces.len() || to == 0);
+            let jumps = if is_natural {
+                0.0
+            } else if is_break {
+                JUMPS_OF_A_BREAK
+            } else {
+                1.0
+            };
+            let jump = weights.jump * jumps;
             let rise = weights.rise * (rise_mm / scale.height_mm).powi(2);
             Join { to, cost: cost + jump + rise, rise_mm, is_natural }
         })

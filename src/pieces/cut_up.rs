@@ -13,6 +13,10 @@ use crate::planar::{Contour, Grid, Region};
 use crate::reeb::Cut;
 use crate::topology::Descriptor;
 
+/// The blank before the first ink and after the last, as a part of the exemplar's longer side. Smaller, and
+/// copies that are joined end to end nearly touch; larger, and the gap between them shows.
+const END_BLANK: f64 = 0.005;
+
 /// The pieces of `region` between `cuts`, left to right.
 pub(super) fn cut_up(region: &Region, cuts: &[Cut]) -> Vec<Piece> {
     let Some((low, high)) = region.bounds_mm() else {
@@ -21,15 +25,17 @@ pub(super) fn cut_up(region: &Region, cuts: &[Cut]) -> Vec<Piece> {
     let grid = region.grid();
     let middle_mm = (low.y + high.y) / 2.0;
     let mut edges: Vec<f64> = cuts.iter().map(|c| grid.mm(c.x)).collect();
-    edges.insert(0, low.x);
-    edges.push(high.x);
+    // Blank ends keep pieces apart that are joined where the exemplar begins and ends.
+    let blank_mm = END_BLANK * (high - low).max_element();
+    edges.insert(0, low.x - blank_mm);
+    edges.push(high.x + blank_mm);
     let endpoints = |cut: Option<&Cut>| -> Vec<Endpoint> {
         let crossings = cut.map_or(&[][..], |c| &c.crossings);
         crossings.iter().map(|c| Endpoint { y_mm: c.y_mm - middle_mm, tangent: c.tangent }).collect()
     };
     let mut pieces: Vec<Piece> = (0..=cuts.len())
         .map(|i| Piece {
-            x_mm: edges[i] - low.x,
+            x_mm: edges[i] - edges[0],
             width_mm: edges[i + 1] - edges[i],
             left: endpoints(i.checked_sub(1).map(|left| &cuts[left])),
             right: endpoints(cuts.get(i)),

@@ -43,7 +43,7 @@ pub struct Chain {
 /// The ink between two neighbouring cuts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Piece {
-    /// Where the piece begins in the exemplar, in millimetres from its left end.
+    /// Where the piece begins, in millimetres from where the first piece does.
     pub x_mm: f64,
     /// Its width w in millimetres.
     pub width_mm: f64,
@@ -70,9 +70,11 @@ impl Piece {
         self.right.len() / 2
     }
 
-    /// The lowest and the highest y of the piece's ink, above the middle of the exemplar; (0, 0) without ink.
-    pub fn height_range_mm(&self) -> (f64, f64) {
+    /// How far its ink is from its left and its right side, in millimetres; 0 on a side with portals, and on
+    /// both without ink.
+    pub fn blanks_mm(&self) -> (f64, f64) {
         let points = self.chains.iter().map(|c| &c.points).chain(&self.loops).flatten();
-        points.map(|p| (p.y, p.y)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default()
+        let range = points.map(|p| (p.x, p.x)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        range.map_or((0.0, 0.0), |(low, high)| (low, self.width_mm - high))
     }
 }

@@ -173,6 +173,25 @@ impl Region {
         Ok(Self::fill(grid, &paths, FillRule::Positive))
     }
 
+    /// The region without parts and holes of less than `area_mm2`, and a point of each that was left out, in
+    /// millimetres.
+    pub fn without_specks(&self, area_mm2: f64) -> (Self, Vec<DVec2>) {
+        let mut specks = Vec::new();
+        let mut keep = |contour: &Contour| {
+            let large = contour.area_mm2(self.grid).abs() >= area_mm2;
+            if !large {
+                specks.push(self.grid.to_mm(contour.points()[0]));
+            }
+            large
+        };
+        let mut parts = self.parts.clone();
+        parts.retain(|part| keep(&part.exterior));
+        for part in &mut parts {
+            part.holes.retain(&mut keep);
+        }
+        (Self { grid: self.grid, parts }, specks)
+    }
+
     /// The grid of the coordinates.
     pub fn grid(&self) -> Grid {
         self.grid
@@ -311,6 +330,17 @@ mod tests {
             panic!("a hole outside of ink is no region")
         };
         assert_eq!(faults, [Fault::Nesting(DVec2::new(6.0, 0.0))]);
+    }
+
+    #[test]
+    fn specks_are_left_out_and_named() {
+        let paths =
+            [square(0.0, 0.0, 10.0), hole(4.0, 4.0, 0.01), square(20.0, 0.0, 0.01), hole(6.0, 6.0, 2.0)];
+        let region = Region::fill(grid(), &paths, FillRule::Positive);
+        let (clean, specks) = region.without_specks(0.001);
+        assert_eq!((clean.components(), clean.holes(), specks.len()), (1, 1, 2));
+        assert!(specks.iter().any(|p| p.distance(DVec2::new(20.0, 0.0)) < 0.01));
+        assert_eq!(region.without_specks(0.0).0, region);
     }
 
     #[test]

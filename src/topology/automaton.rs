@@ -106,6 +106,11 @@ impl<'a> Automaton<'a> {
         }
     }
 
+    /// What is asked for.
+    pub fn goal(&self) -> Goal {
+        self.goal
+    }
+
     /// The number of states found so far.
     pub fn len(&self) -> usize {
         self.states.len()

@@ -1,0 +1,180 @@
+//! The arguments as they are typed. This one definition makes the parser and the help.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+use super::values;
+use crate::domain::CurveSpec;
+use crate::job::SlicingChoice;
+
+/// Ornament that can be made: new pattern from one SVG ornament, with exactly the components and holes you ask
+/// for, written as a part and counted again on the file.
+#[derive(Debug, Parser)]
+#[command(name = "openwork", version, max_term_width = 100)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub(super) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Synthesize a band along a line, a circle or any path, and write it as SVG, STL or PNG
+    #[command(after_help = BAND_HELP)]
+    Band(Box<BandArguments>),
+    /// Show how an exemplar is understood: critical points, cuts, pieces, portals, descriptors
+    Analyze(AnalyzeArguments),
+    /// Extrude any SVG, as it is, to a verified solid
+    Extrude(ExtrudeArguments),
+    /// Count components and holes (SVG) or shells and genus (STL) of a file, and check them
+    #[command(after_help = VERIFY_HELP)]
+    Verify(VerifyArguments),
+}
+
+const BAND_HELP: &str = "\
+Lengths take mm, cm, in, pt or px (96 to the inch); a bare number is millimetres.
+
+Examples:
+  A bracelet in one piece that closes on itself:
+    openwork band vine.svg --along circle:65mm --width 14mm --components 1 --closed-pattern \\
+                  -o bracelet.stl -o bracelet.svg
+  A border of 24 cm with a picture of it:
+    openwork band scroll.svg --along line:240mm --components 1 -o border.svg -o border.png
+  Along a path drawn elsewhere, for a nozzle of 0.4 mm:
+    openwork band lace.svg --along path:collar.svg#edge --min-feature 0.4mm -o collar.stl
+
+Exit codes: 0 done; 2 the input or an argument is wrong; 3 the constraints cannot be met;
+4 the result failed verification and nothing was written; 1 a bug of ours.";
+
+const VERIFY_HELP: &str = "\
+Exit code 4 when the file is not as asked for, 2 when it cannot be read.
+
+Example:
+  openwork verify sign.svg --components 1 --holes 0 --min-feature 0.5mm";
+
+#[derive(Debug, Args)]
+pub(super) struct BandArguments {
+    /// The ornament to learn from (SVG)
+    pub(super) exemplar: PathBuf,
+    /// The curve: line:120mm, circle:65mm (diameter), path:FILE.svg or path:FILE.svg#id
+    #[arg(long, value_name = "SPEC", value_parser = values::curve)]
+    pub(super) along: CurveSpec,
+    /// Height of the band; the exemplar is scaled to it [default: the exemplar's own height]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_negative_numbers = true)]
+    pub(super) width: Option<f64>,
+    /// Exactly so many connected components [default: free]
+    #[arg(long, value_name = "N")]
+    pub(super) components: Option<u32>,
+    /// Exactly so many holes; the inside of a closed ring is one [default: free]
+    #[arg(long, value_name = "N")]
+    pub(super) holes: Option<u32>,
+    /// The pattern must go all the way round a closed curve
+    #[arg(long)]
+    pub(super) closed_pattern: bool,
+    /// Where the exemplar is cut: reeb, reeb:LENGTH or uniform:T
+    #[arg(long, value_name = "RULE", value_parser = values::slicing, default_value = "reeb")]
+    pub(super) slicing: SlicingChoice,
+    /// Another seed gives another band near the optimum [default: the optimum]
+    #[arg(long, value_name = "N")]
+    pub(super) seed: Option<u64>,
+    /// Weight of the autocorrelation: more gives less repetition
+    #[arg(long, value_name = "BETA", default_value_t = 0.0, allow_negative_numbers = true)]
+    pub(super) variety: f64,
+    /// Weight of matching positions against matching tangents, 0 to 1
+    #[arg(long, default_value_t = 0.8, allow_negative_numbers = true)]
+    pub(super) alpha: f64,
+    /// Cost of a jump: more keeps longer runs of the exemplar, 0 allows short cycles
+    #[arg(long, value_name = "LAMBDA", default_value_t = 1.0, allow_negative_numbers = true)]
+    pub(super) jump_cost: f64,
+    /// Thickness of the solid
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "2mm", allow_negative_numbers = true)]
+    pub(super) thickness: f64,
+    /// Round corners of the path to this radius [default: a corner is an error]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_negative_numbers = true)]
+    pub(super) round: Option<f64>,
+    #[command(flatten)]
+    pub(super) tolerances: ToleranceArguments,
+    /// A file to write: .svg, .stl or .png; may be repeated; - is SVG on standard output
+    #[arg(short, long, value_name = "FILE", required = true)]
+    pub(super) output: Vec<PathBuf>,
+    /// Write a report of what was asked for, made and measured (JSON; - for standard output)
+    #[arg(long, value_name = "FILE")]
+    pub(super) report: Option<PathBuf>,
+    /// Say nothing but errors
+    #[arg(short, long)]
+    pub(super) quiet: bool,
+}
+
+#[derive(Debug, Clone, Args)]
+pub(super) struct ToleranceArguments {
+    /// Narrowest ink the machine makes; counts must survive eroding by half of it [default: not checked]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_negative_numbers = true)]
+    pub(super) min_feature: Option<f64>,
+    /// Narrowest gap the machine keeps open; counts must survive dilating by half of it [default: not checked]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_negative_numbers = true)]
+    pub(super) min_gap: Option<f64>,
+    /// Greatest distance between a curve and what stands for it
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "0.01mm", allow_negative_numbers = true)]
+    pub(super) chord: f64,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct AnalyzeArguments {
+    /// The ornament (SVG)
+    pub(super) exemplar: PathBuf,
+    /// Height to which the exemplar is scaled [default: its own]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_negative_numbers = true)]
+    pub(super) width: Option<f64>,
+    /// Where the exemplar is cut: reeb, reeb:LENGTH or uniform:T
+    #[arg(long, value_name = "RULE", value_parser = values::slicing, default_value = "reeb")]
+    pub(super) slicing: SlicingChoice,
+    #[command(flatten)]
+    pub(super) tolerances: ToleranceArguments,
+    /// An overlay to write: .svg or .png; may be repeated; - is SVG on standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Vec<PathBuf>,
+    /// Print the analysis as JSON on standard output
+    #[arg(long)]
+    pub(super) json: bool,
+    /// Say nothing but errors
+    #[arg(short, long)]
+    pub(super) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ExtrudeArguments {
+    /// The drawing (SVG)
+    pub(super) file: PathBuf,
+    /// Thickness of the solid
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "2mm", allow_negative_numbers = true)]
+    pub(super) thickness: f64,
+    /// Greatest distance between a curve and its chords
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "0.01mm", allow_negative_numbers = true)]
+    pub(super) chord: f64,
+    /// The solid to write (.stl; - for standard output)
+    #[arg(short, long, value_name = "FILE", required = true)]
+    pub(super) output: PathBuf,
+    /// Print what was made and found as JSON on standard output
+    #[arg(long)]
+    pub(super) json: bool,
+    /// Say nothing but errors
+    #[arg(short, long)]
+    pub(super) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct VerifyArguments {
+    /// The file (.svg or .stl)
+    pub(super) file: PathBuf,
+    /// Components (SVG) or shells (STL) that it must have
+    #[arg(long, value_name = "N")]
+    pub(super) components: Option<usize>,
+    /// Holes (SVG) or total genus (STL) that it must have
+    #[arg(long, value_name = "N")]
+    pub(super) holes: Option<usize>,
+    #[command(flatten)]
+    pub(super) tolerances: ToleranceArguments,
+    /// Print what was found as JSON on standard output
+    #[arg(long)]
+    pub(super) json: bool,
+}

@@ -1,0 +1,36 @@
+//! The command line: raw arguments, checked configuration, run, messages.
+//!
+//! Standard output carries only what was asked for; messages and the progress bar, which shows on a terminal
+//! only, go to standard error. Exit codes: 0 done, 2 wrong input or arguments, 3 constraints that cannot be
+//! met, 4 failed verification, 1 a bug of ours, 130 interrupted.
+
+mod args;
+mod progress;
+mod run;
+mod values;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+pub use args::Arguments;
+
+/// The exit code of a program that was interrupted from the keyboard.
+const INTERRUPTED: i32 = 130;
+
+/// Runs the program with the process's arguments.
+pub fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    // Without a handler an interruption still ends the program, only a temporary file may stay behind.
+    let _ = ctrlc::set_handler(|| {
+        crate::export::remove_staged();
+        std::process::exit(INTERRUPTED);
+    });
+    match run::run(arguments) {
+        Ok(code) => code,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(error.exit_code())
+        }
+    }
+}

@@ -1,0 +1,283 @@
+//! From arguments to results and messages.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use thiserror::Error;
+
+use super::args::{
+    AnalyzeArguments, Arguments, BandArguments, Command, ExtrudeArguments, ToleranceArguments,
+    VerifyArguments,
+};
+use super::progress::Progress;
+use crate::analysis::{Analysis, AnalysisError};
+use crate::exemplar::{Exemplar, Limits, ReadOptions};
+use crate::export;
+use crate::job::{BandBuilder, BandReport, Format, JobError, Output, SlicingChoice, Target, extrude};
+use crate::pieces::CostWeights;
+use crate::planar::{Tolerances, TolerancesError};
+use crate::reeb::{SlicingError, SlicingRule};
+use crate::verify::{self, Expected, Mismatch, VerifyError};
+
+/// Whatever ends the program with a message.
+#[derive(Debug, Error)]
+pub(super) enum CliError {
+    #[error(transparent)]
+    Job(#[from] JobError),
+    #[error("{file}: {error}")]
+    Unreadable { file: String, error: std::io::Error },
+    #[error("{file}: {error}")]
+    Unjudged { file: String, error: VerifyError },
+    #[error("{file}: {mismatch}")]
+    Mismatch { file: String, mismatch: Mismatch },
+    #[error("{file}: the name does not say what it is; verify reads .svg and .stl")]
+    UnknownKind { file: String },
+    #[error(transparent)]
+    Analysis(#[from] AnalysisError),
+    #[error("cannot write to standard output: {0}")]
+    Stdout(std::io::Error),
+}
+
+impl From<TolerancesError> for CliError {
+    fn from(error: TolerancesError) -> Self {
+        Self::Job(error.into())
+    }
+}
+
+impl CliError {
+    pub(super) fn exit_code(&self) -> u8 {
+        match self {
+            Self::Job(job) => job.exit_code(),
+            Self::Unreadable { .. } | Self::Unjudged { .. } | Self::UnknownKind { .. } | Self::Stdout(_) => 2,
+            Self::Mismatch { .. } => 4,
+            Self::Analysis(AnalysisError::Slicing(SlicingError::TooThin { .. })) => 3,
+            Self::Analysis(_) => 2,
+        }
+    }
+}
+
+pub(super) fn run(arguments: Arguments) -> Result<ExitCode, CliError> {
+    match arguments.command {
+        Command::Band(band) => run_band(&band),
+        Command::Analyze(analyze) => run_analyze(&analyze),
+        Command::Extrude(extrude) => run_extrude(&extrude),
+        Command::Verify(verify) => run_verify(&verify),
+    }
+}
+
+fn tolerances(arguments: &ToleranceArguments) -> Result<Tolerances, TolerancesError> {
+    let or_none = |length: Option<f64>| length.unwrap_or(0.0);
+    Tolerances::new(arguments.chord, or_none(arguments.min_feature), or_none(arguments.min_gap))
+}
+
+fn output(path: &Path, stdout: Format) -> Result<Output, JobError> {
+    if path.as_os_str() == "-" { Ok(Output::stdout(stdout)) } else { Output::file(path) }
+}
+
+fn run_band(arguments: &BandArguments) -> Result<ExitCode, CliError> {
+    let outputs: Vec<Output> =
+        arguments.output.iter().map(|path| output(path, Format::Svg)).collect::<Result<_, _>>()?;
+    let report_target = arguments
+        .report
+        .as_ref()
+        .map(|path| if path.as_os_str() == "-" { Target::Stdout } else { Target::File(path.clone()) });
+    Output::check_distinct(outputs.iter().map(Output::target).chain(report_target.as_ref()))?;
+    let job = builder(arguments).build()?;
+    let progress = Progress::new(arguments.quiet);
+    let band = job.run(&mut |stage| progress.show(stage))?;
+    let report = band.write(&outputs, report_target.as_ref(), &mut |stage| progress.show(stage))?;
+    drop(progress);
+    if !arguments.quiet {
+        say_band(&report);
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn builder(a: &BandArguments) -> BandBuilder {
+    let mut builder = BandBuilder::new(&a.exemplar, a.along.clone())
+        .closed_pattern(a.closed_pattern)
+        .slicing(a.slicing)
+        .variety(a.variety)
+        .alpha(a.alpha)
+        .jump_cost(a.jump_cost)
+        .thickness_mm(a.thickness)
+        .chord_mm(a.tolerances.chord)
+        .min_feature_mm(a.tolerances.min_feature.unwrap_or(0.0))
+        .min_gap_mm(a.tolerances.min_gap.unwrap_or(0.0));
+    if let Some(width) = a.width {
+        builder = builder.width_mm(width);
+    }
+    if let Some(components) = a.components {
+        builder = builder.components(components);
+    }
+    if let Some(holes) = a.holes {
+        builder = builder.holes(holes);
+    }
+    if let Some(seed) = a.seed {
+        builder = builder.seed(seed);
+    }
+    if let Some(radius) = a.round {
+        builder = builder.round_mm(radius);
+    }
+    builder
+}
+
+fn say_band(report: &BandReport) {
+    let closed = if report.closed_pattern { ", closed all the way round" } else { "" };
+    eprintln!(
+        "{} component(s), {} hole(s){closed}: {} pieces along {:.1} mm, {} jumps",
+        report.components, report.holes, report.pieces_in_result, report.length_mm, report.seams.jumps
+    );
+    let widths = [("ink", report.min_feature), ("gap", report.min_gap)];
+    for (what, narrowest) in widths.iter().filter_map(|(what, n)| n.map(|n| (what, n))) {
+        let p = narrowest.position_mm;
+        eprintln!("narrowest {what} {:.3} mm, at ({:.1}, {:.1}) mm", narrowest.width_mm, p.x, p.y);
+    }
+    for note in &report.notes {
+        eprintln!("note: {note}");
+    }
+    for file in &report.files {
+        eprintln!("wrote {file}");
+    }
+}
+
+fn run_analyze(arguments: &AnalyzeArguments) -> Result<ExitCode, CliError> {
+    let outputs: Vec<Output> =
+        arguments.output.iter().map(|path| output(path, Format::Svg)).collect::<Result<_, _>>()?;
+    Output::check_distinct(outputs.iter().map(Output::target))?;
+    if let Some(stl) = outputs.iter().find(|o| o.format() == Format::Stl) {
+        return Err(CliError::Job(JobError::Option {
+            option: "--output",
+            found: format!("{:?} is a solid", stl.target()),
+            wanted: "an overlay is a picture: end the name in .svg or .png".to_owned(),
+        }));
+    }
+    let tolerances = tolerances(&arguments.tolerances)?;
+    let options = ReadOptions {
+        chord_mm: tolerances.chord_mm(),
+        target_height_mm: arguments.width,
+        limits: Limits::default(),
+    };
+    let exemplar = Exemplar::read(&arguments.exemplar, &options).map_err(JobError::from)?;
+    let rule = match arguments.slicing {
+        SlicingChoice::Reeb => None,
+        SlicingChoice::Persistence(persistence_mm) => Some(SlicingRule::Reeb { persistence_mm }),
+        SlicingChoice::Uniform(lines) => Some(SlicingRule::Uniform { lines }),
+    };
+    let analysis = Analysis::new(&exemplar, rule, &tolerances, &CostWeights::default())?;
+    write_all(&outputs, |format| match format {
+        Format::Png => analysis.overlay_png(OVERLAY_PIXELS).map_err(JobError::from),
+        Format::Svg | Format::Stl => Ok(analysis.overlay_svg().into_bytes()),
+    })?;
+    if arguments.json {
+        print_json(&analysis)?;
+    } else if !arguments.quiet && !outputs.iter().any(|o| *o.target() == Target::Stdout) {
+        print(&format!("{analysis}\n"))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The longer side of an overlay in pixels: pieces of a fine ornament are narrow.
+const OVERLAY_PIXELS: u32 = 2400;
+
+/// Writes each output whole, or none of them.
+fn write_all(
+    outputs: &[Output],
+    encode: impl Fn(Format) -> Result<Vec<u8>, JobError>,
+) -> Result<(), CliError> {
+    let mut staged = Vec::new();
+    for output in outputs {
+        let bytes = encode(output.format())?;
+        match output.target() {
+            Target::File(path) => staged.push(export::stage(path, &bytes).map_err(JobError::from)?),
+            Target::Stdout => print_bytes(&bytes)?,
+        }
+    }
+    Ok(export::persist_all(staged).map_err(JobError::from)?)
+}
+
+fn run_extrude(arguments: &ExtrudeArguments) -> Result<ExitCode, CliError> {
+    let output = output(&arguments.output, Format::Stl)?;
+    if output.format() != Format::Stl {
+        return Err(CliError::Job(JobError::Option {
+            option: "--output",
+            found: format!("{} is not a solid", arguments.output.display()),
+            wanted: "end the name in .stl".to_owned(),
+        }));
+    }
+    let tolerances = Tolerances::new(arguments.chord, 0.0, 0.0)?;
+    let progress = Progress::new(arguments.quiet);
+    let made = extrude(&arguments.file, arguments.thickness, &tolerances, &output, &mut |stage| {
+        progress.show(stage)
+    })?;
+    drop(progress);
+    if arguments.json {
+        print_json(&made)?;
+    }
+    if !arguments.quiet {
+        eprintln!(
+            "{} shell(s), total genus {}: {} facets, {:.1} mm3",
+            made.solid.shells.len(),
+            made.solid.genus,
+            made.solid.triangles,
+            made.solid.volume_mm3
+        );
+        for note in &made.notes {
+            eprintln!("note: {note}");
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn run_verify(arguments: &VerifyArguments) -> Result<ExitCode, CliError> {
+    let file = arguments.file.display().to_string();
+    let tolerances = tolerances(&arguments.tolerances)?;
+    let expected = Expected {
+        components: arguments.components,
+        holes: arguments.holes,
+        min_feature_mm: tolerances.min_feature_mm(),
+        min_gap_mm: tolerances.min_gap_mm(),
+    };
+    let bytes =
+        std::fs::read(&arguments.file).map_err(|error| CliError::Unreadable { file: file.clone(), error })?;
+    let unjudged = |error| CliError::Unjudged { file: file.clone(), error };
+    let extension = arguments.file.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
+    let checked = match extension.as_str() {
+        "svg" => {
+            let report = verify::read_svg(&bytes, tolerances.chord_mm()).map_err(unjudged)?;
+            print_report(arguments.json, &report)?;
+            report.check(&expected)
+        }
+        "stl" => {
+            let report = verify::read_stl(&bytes).map_err(unjudged)?;
+            print_report(arguments.json, &report)?;
+            report.check(&expected)
+        }
+        _ => return Err(CliError::UnknownKind { file }),
+    };
+    checked.map_err(|mismatch| CliError::Mismatch { file: file.clone(), mismatch })?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn print_report<R: serde::Serialize + std::fmt::Display>(json: bool, report: &R) -> Result<(), CliError> {
+    if json { print_json(report) } else { print(&format!("{report}\n")) }
+}
+
+fn print_json(report: &impl serde::Serialize) -> Result<(), CliError> {
+    let text = serde_json::to_string_pretty(report).map_err(|e| CliError::Stdout(e.into()))?;
+    print(&format!("{text}\n"))
+}
+
+fn print(text: &str) -> Result<(), CliError> {
+    print_bytes(text.as_bytes())
+}
+
+/// Prints to standard output; a reader that has closed the pipe has had enough.
+fn print_bytes(bytes: &[u8]) -> Result<(), CliError> {
+    use std::io::Write;
+    let mut out = std::io::stdout().lock();
+    match out.write_all(bytes).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(CliError::Stdout(error)),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,430 @@
+//! A band along a curve: from the exemplar to verified files.
+
+use std::path::Path;
+
+use glam::DVec2;
+use sha2::{Digest, Sha256};
+
+use super::builder::{BandJob, SlicingChoice};
+use super::error::JobError;
+use super::extrude::{check_stl, name};
+use super::output::{Format, Output, Pending, Target, persist};
+use super::part::{Part, PartError};
+use super::plan::{Plan, PlanError, PlanOptions, plan};
+use super::refusal;
+use super::report::{BandReport, InputReport, SeamReport, StageTime};
+use super::stage::{Clock, Stage};
+use crate::domain::{BandMap, CurveSpec, PlanarCurve};
+use crate::exemplar::{Exemplar, Limits, ReadOptions, read_path};
+use crate::export::{self, SvgDocument, SvgOptions};
+use crate::fabricate;
+use crate::fit::{FitOptions, Outline};
+use crate::pieces::Catalogue;
+use crate::planar::Region;
+use crate::reeb::{ReebGraph, Slicing, SlicingRule};
+use crate::topology::{Shape, Topology};
+use crate::verify::{self, Expected, Mismatch, Narrowest, SvgReport};
+
+/// The chord error is shared out: flattening the exemplar, bending, mapping, and fitting curves for the SVG.
+const READ_SHARE: f64 = 0.25;
+const FIT_SHARE: f64 = 0.125;
+const MAP_SHARE: f64 = 0.125;
+const SVG_SHARE: f64 = 0.5;
+/// When the counts are not as planned, chords cut through a gap or a strand: smaller ones are tried.
+const CHORD_TRIES: [f64; 4] = [1.0, 0.25, 0.06, 0.015];
+
+/// A band that has the planned topology, ready to be written.
+#[derive(Debug, Clone)]
+pub struct Band {
+    job: BandJob,
+    part: Part,
+    plan: Plan,
+    planned: Topology,
+    report: BandReport,
+}
+
+/// An exemplar cut into pieces.
+struct Cut {
+    exemplar: Exemplar,
+    catalogue: Catalogue,
+    height_mm: f64,
+    /// Parts and holes that are too small to be told from nothing at the chord error.
+    specks: Vec<DVec2>,
+}
+
+impl Band {
+    pub(super) fn new(job: &BandJob, progress: &mut dyn FnMut(Stage)) -> Result<Self, JobError> {
+        let mut clock = Clock::new(progress);
+        let options = &job.options;
+        let (exemplar, curve, curve_input) = clock.time(Stage::Read, || {
+            let (curve, input) = read_curve(&options.along, options.round_mm)?;
+            Ok::<_, JobError>((read_exemplar(job)?, curve, input))
+        })?;
+        if options.goal.closed_pattern && !curve.is_closed() {
+            return Err(JobError::Option {
+                option: "--closed-pattern",
+                found: format!("{} is an open curve", options.along),
+                wanted: "a pattern can close only along a closed curve, as circle:65mm".to_owned(),
+            });
+        }
+        let cut = clock.time(Stage::Slice, || slice(job, exemplar))?;
+        let half = cut.height_mm / 2.0;
+        // Where the band cannot lie is found before the search, not after it.
+        let map = clock.time(Stage::Map, || BandMap::new(curve, -half, half))?;
+        let length_mm = map.curve().length_mm();
+        let is_ring = map.curve().is_closed();
+        let plan_options = PlanOptions {
+            shape: if is_ring { Shape::Ring } else { Shape::Open },
+            length_mm,
+            height_mm: cut.height_mm,
+            goal: options.goal,
+            weights: options.weights,
+            seed: options.seed,
+            variety: job.variety,
+        };
+        let plan =
+            clock.time(Stage::Solve, || plan(&cut.catalogue, &plan_options)).map_err(
+                |error| match error {
+                    PlanError::TooLarge { labels } => JobError::SearchTooLarge { labels },
+                    PlanError::Refused { refusal, bin_mm } => {
+                        JobError::Refused(refusal::message(&cut.catalogue, &plan_options, &refusal, bin_mm))
+                    }
+                },
+            )?;
+        let planned = topology_of(&cut.catalogue, &plan.sequence, plan_options.shape);
+        let (part, outline) = make_part(job, &cut, &plan, &map, planned, &mut clock)?;
+        let report = describe(job, &cut, &plan, planned, &map, &outline, &part, curve_input, clock.times);
+        Ok(Self { job: job.clone(), part, plan, planned, report })
+    }
+
+    /// The part in millimetres, y up from the lower left corner of its page.
+    pub fn region(&self) -> &Region {
+        &self.part.region
+    }
+
+    /// The plan that was followed.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// What the plan's pieces add up to.
+    pub fn topology(&self) -> Topology {
+        self.planned
+    }
+
+    /// Encodes every output, reads each again, counts, and gives them their names only if all pass. The report
+    /// goes to `report_file` as JSON, if one is named.
+    ///
+    /// # Errors
+    /// [`JobError`] when a file cannot be written or does not pass; then none of them exists under its name.
+    pub fn write(
+        &self,
+        outputs: &[Output],
+        report_file: Option<&Target>,
+        progress: &mut dyn FnMut(Stage),
+    ) -> Result<BandReport, JobError> {
+        Output::check_distinct(outputs.iter().map(Output::target).chain(report_file))?;
+        let mut clock = Clock::new(progress);
+        let mut report = self.report.clone();
+        let expected = Expected {
+            components: Some(self.planned.components as usize),
+            holes: Some(self.planned.holes as usize),
+            min_feature_mm: self.job.tolerances.min_feature_mm(),
+            min_gap_mm: self.job.tolerances.min_gap_mm(),
+        };
+        // The promise at the machine's tolerance is checked on the drawing, which therefore is always made.
+        let drawing = clock.time(Stage::Svg, || self.svg())?;
+        let found = clock.time(Stage::Verify, || self.read_svg(drawing.text.as_bytes()))?;
+        let svg_name = outputs.iter().find(|o| o.format() == Format::Svg).or(outputs.first());
+        let file = svg_name.map_or_else(|| "the drawing".into(), |o| name(o.target()));
+        found.check(&expected).map_err(|mismatch| self.mismatch(file, mismatch, &found))?;
+        let mut pending = Vec::new();
+        for output in outputs {
+            let item = match output.format() {
+                Format::Svg => {
+                    report.svg_segments = Some([drawing.lines, drawing.cubics]);
+                    let item = Pending::new(output.target(), drawing.text.clone().into_bytes())?;
+                    let same = clock.time(Stage::Verify, || item.read_again())? == drawing.text.as_bytes();
+                    if !same {
+                        let again = self.read_svg(&item.read_again()?)?;
+                        again
+                            .check(&expected)
+                            .map_err(|m| self.mismatch(name(output.target()), m, &again))?;
+                    }
+                    item
+                }
+                Format::Stl => {
+                    let bytes = clock.time(Stage::Stl, || self.stl())?;
+                    let item = Pending::new(output.target(), bytes)?;
+                    let solid = clock.time(Stage::Verify, || check_stl(output.target(), &item, &expected))?;
+                    report.triangles = Some(solid.triangles);
+                    report.shells = Some(solid.shells.len());
+                    report.genus = Some(solid.genus);
+                    report.volume_mm3 = Some(solid.volume_mm3);
+                    item
+                }
+                Format::Png => {
+                    let picture =
+                        clock.time(Stage::Png, || export::png(&self.part.region, export::DEFAULT_PIXELS))?;
+                    Pending::new(output.target(), picture)?
+                }
+            };
+            pending.push(item);
+        }
+        report.components = found.components;
+        report.holes = found.holes;
+        report.min_feature = found.min_feature;
+        report.min_gap = found.min_gap;
+        report.files = outputs.iter().map(|o| name(o.target()).display().to_string()).collect();
+        report.times.extend(clock.times);
+        if let Some(target) = report_file {
+            pending.push(Pending::new(target, report.to_json().into_bytes())?);
+        }
+        persist(pending)?;
+        Ok(report)
+    }
+
+    /// The part as an SVG drawing.
+    ///
+    /// # Errors
+    /// [`JobError::Export`] when the drawing cannot be made.
+    pub fn svg(&self) -> Result<SvgDocument, JobError> {
+        let options = SvgOptions {
+            width_mm: self.part.page_mm.x,
+            height_mm: self.part.page_mm.y,
+            chord_mm: self.job.tolerances.chord_mm() * SVG_SHARE,
+            title: None,
+            description: Some(format!("{} of {}", self.report.generator, self.report.exemplar.file)),
+        };
+        Ok(export::svg(&self.part.region, &options)?)
+    }
+
+    /// The part as a binary STL solid.
+    ///
+    /// # Errors
+    /// [`JobError`] when the solid cannot be made.
+    pub fn stl(&self) -> Result<Vec<u8>, JobError> {
+        let solid = fabricate::extrude(&self.part.region, self.job.options.thickness_mm)?;
+        Ok(export::stl(&solid, self.report.generator)?)
+    }
+
+    fn read_svg(&self, bytes: &[u8]) -> Result<SvgReport, JobError> {
+        verify::read_svg(bytes, self.job.tolerances.chord_mm() / 4.0)
+            .map_err(|error| JobError::Unjudged { file: "the drawing".into(), error })
+    }
+
+    fn mismatch(&self, file: std::path::PathBuf, mismatch: Mismatch, found: &SvgReport) -> JobError {
+        let scale = |narrowest: Option<Narrowest>, wanted: f64, option: &str| {
+            let factor = narrowest.map(|n| wanted / n.width_mm).filter(|f| f.is_finite() && *f < 100.0);
+            let width = factor.map(|f| format!("--width {:.0}mm or more", (self.report.width_mm * f).ceil()));
+            format!(
+                "; {} would do, or a smaller {option}",
+                width.unwrap_or_else(|| "a larger --width".to_owned())
+            )
+        };
+        let tolerances = &self.job.tolerances;
+        let remedy = match mismatch {
+            Mismatch::Feature { .. } => {
+                scale(found.min_feature, tolerances.min_feature_mm(), "--min-feature")
+            }
+            Mismatch::Gap { .. } => scale(found.min_gap, tolerances.min_gap_mm(), "--min-gap"),
+            _ => String::new(),
+        };
+        JobError::Mismatch { file, mismatch, remedy }
+    }
+}
+
+fn read_exemplar(job: &BandJob) -> Result<Exemplar, JobError> {
+    let options = ReadOptions {
+        chord_mm: job.tolerances.chord_mm() * READ_SHARE,
+        target_height_mm: job.options.width_mm,
+        limits: Limits::default(),
+    };
+    Ok(Exemplar::read(&job.options.exemplar, &options)?)
+}
+
+fn read_curve(
+    spec: &CurveSpec,
+    round_mm: Option<f64>,
+) -> Result<(PlanarCurve, Option<InputReport>), JobError> {
+    Ok(match spec {
+        CurveSpec::Line { length_mm } => (PlanarCurve::line(*length_mm)?, None),
+        CurveSpec::Circle { diameter_mm } => (PlanarCurve::circle(*diameter_mm)?, None),
+        CurveSpec::Path { file, id } => {
+            let path = read_path(file, id.as_deref(), &Limits::default())?;
+            let curve = match round_mm {
+                Some(radius) => PlanarCurve::from_bez_path_rounded(&path, radius)?,
+                None => PlanarCurve::from_bez_path(&path)?,
+            };
+            (curve, Some(InputReport { file: file.display().to_string(), sha256: sha256_of(file) }))
+        }
+    })
+}
+
+fn sha256_of(file: &Path) -> String {
+    let bytes = std::fs::read(file).unwrap_or_default();
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+fn slice(job: &BandJob, exemplar: Exemplar) -> Result<Cut, JobError> {
+    let speck_mm2 = job.tolerances.chord_mm().powi(2);
+    let (region, specks) = exemplar.region().without_specks(speck_mm2);
+    let region = &region;
+    let (low, high) = region.bounds_mm().unwrap_or_default();
+    let rule = match job.options.slicing {
+        SlicingChoice::Reeb => SlicingRule::reeb_for_width(high.x - low.x),
+        SlicingChoice::Persistence(persistence_mm) => SlicingRule::Reeb { persistence_mm },
+        SlicingChoice::Uniform(lines) => SlicingRule::Uniform { lines },
+    };
+    let slicing = Slicing::new(region, &ReebGraph::new(region), rule, &job.tolerances)?;
+    let catalogue = Catalogue::new(region, &slicing.cuts, &job.options.weights);
+    Ok(Cut { catalogue, height_mm: high.y - low.y, exemplar, specks })
+}
+
+/// The topology of a sequence by joining all descriptors, independently of the automaton that led the search.
+fn topology_of(catalogue: &Catalogue, sequence: &[usize], shape: Shape) -> Topology {
+    let mut pieces = sequence.iter().map(|&p| &catalogue.descriptors()[p]);
+    let first = pieces.next().expect("a plan has pieces").clone();
+    let run =
+        pieces.fold(first, |run, piece| run.join(piece).expect("a plan joins pieces with equal portals"));
+    match shape {
+        Shape::Open => run.finished().expect("a plan for an open curve leaves no portal open"),
+        Shape::Ring => run.close().expect("a plan for a ring closes"),
+    }
+}
+
+fn make_part(
+    job: &BandJob,
+    cut: &Cut,
+    plan: &Plan,
+    map: &BandMap,
+    planned: Topology,
+    clock: &mut Clock<'_>,
+) -> Result<(Part, Outline), JobError> {
+    let mut last = None;
+    for share in CHORD_TRIES {
+        let chord_mm = job.tolerances.chord_mm() * share;
+        let fit = FitOptions {
+            length_mm: map.curve().length_mm(),
+            height_mm: cut.height_mm,
+            is_ring: map.curve().is_closed(),
+            chord_mm: chord_mm * FIT_SHARE,
+        };
+        let outline = clock.time(Stage::Fit, || Outline::new(&cut.catalogue, &plan.sequence, &fit))?;
+        match clock.time(Stage::Map, || Part::new(&outline, map, planned, chord_mm * MAP_SHARE)) {
+            Ok(part) => return Ok((part, outline)),
+            Err(PartError::Job(error)) => return Err(error),
+            Err(PartError::Untrue { components, holes, place }) => last = Some((components, holes, place)),
+        }
+    }
+    let (found_components, found_holes, place) = last.unwrap_or_default();
+    Err(JobError::Outline {
+        found_components,
+        found_holes,
+        components: planned.components as usize,
+        holes: planned.holes as usize,
+        place,
+    })
+}
+
+#[expect(
+    clippy::too_many_arguments,
+    reason = "a report draws on every stage, and this is the only place that sees all"
+)]
+fn describe(
+    job: &BandJob,
+    cut: &Cut,
+    plan: &Plan,
+    planned: Topology,
+    map: &BandMap,
+    outline: &Outline,
+    part: &Part,
+    curve: Option<InputReport>,
+    times: Vec<StageTime>,
+) -> BandReport {
+    let options = &job.options;
+    let worst = |angle: fn(&crate::fit::Seam) -> f64| outline.seams.iter().map(angle).fold(0.0, f64::max);
+    let length_mm = map.curve().length_mm();
+    let mut notes = cut.exemplar.notes().to_vec();
+    if let [first, ..] = cut.specks[..] {
+        notes.push(format!(
+            "{} speck(s) of less than {:.1e} mm2 were left out, the first at ({:.3}, {:.3}) mm; a smaller --chord keeps them",
+            cut.specks.len(),
+            job.tolerances.chord_mm().powi(2),
+            first.x,
+            first.y
+        ));
+    }
+    if plan.epsilon > 0.05 {
+        notes.push(format!(
+            "no sequence came within 5 % of the length; within {:.0} % one did, and it is stretched by {:.1} %",
+            plan.epsilon * 100.0,
+            (outline.stretch - 1.0) * 100.0
+        ));
+    }
+    if outline.squash < 0.99 {
+        notes.push(format!(
+            "the band climbs and was pressed to {:.0} % of its height to fit",
+            outline.squash * 100.0
+        ));
+    }
+    for squeeze in map.squeezes() {
+        notes.push(format!(
+            "the curve bends so hard at ({:.1}, {:.1}) mm that the inner side is squeezed from {:.1} to {:.1} mm",
+            squeeze.position_mm[0], squeeze.position_mm[1], squeeze.reach_mm, squeeze.squeezed_to_mm
+        ));
+    }
+    BandReport {
+        schema_version: 1,
+        generator: concat!("Openwork ", env!("CARGO_PKG_VERSION")),
+        exemplar: InputReport {
+            file: options.exemplar.display().to_string(),
+            sha256: cut.exemplar.sha256().to_owned(),
+        },
+        along: options.along.to_string(),
+        curve,
+        seed: options.seed,
+        wanted_components: options.goal.components,
+        wanted_holes: options.goal.holes,
+        wanted_closed_pattern: options.goal.closed_pattern,
+        components: planned.components as usize,
+        holes: planned.holes as usize,
+        closed_pattern: planned.closed_pattern,
+        length_mm,
+        width_mm: cut.height_mm,
+        thickness_mm: options.thickness_mm,
+        chord_mm: job.tolerances.chord_mm(),
+        pieces_in_exemplar: cut.catalogue.pieces().len(),
+        pieces_in_result: plan.sequence.len(),
+        sequence: plan.sequence.clone(),
+        cost: plan.cost,
+        optimal: plan.gap.map(|gap| gap == 0.0),
+        cost_gap: plan.gap,
+        successors: options.weights.successors,
+        epsilon: plan.epsilon,
+        length_error_mm: length_mm / outline.stretch - length_mm,
+        squash: outline.squash,
+        squeezes: map.squeezes().to_vec(),
+        seams: SeamReport {
+            count: outline.seams.len(),
+            jumps: outline.seams.iter().filter(|s| !s.is_natural).count(),
+            worst_angle_before_deg: worst(|s| s.before_deg),
+            worst_angle_after_deg: worst(|s| s.after_deg),
+        },
+        search_labels: plan.labels,
+        search_states: plan.states,
+        min_feature: None,
+        min_gap: None,
+        area_mm2: part.region.area_mm2(),
+        page_mm: part.page_mm.to_array(),
+        vertices: part.region.vertices(),
+        svg_segments: None,
+        triangles: None,
+        shells: None,
+        genus: None,
+        volume_mm3: None,
+        files: Vec::new(),
+        notes,
+        times,
+    }
+}

@@ -1,0 +1,212 @@
+//! Options of a band, checked before anything is computed.
+
+use std::path::{Path, PathBuf};
+
+use super::band::Band;
+use super::error::JobError;
+use super::stage::Stage;
+use crate::domain::CurveSpec;
+use crate::pieces::CostWeights;
+use crate::planar::Tolerances;
+use crate::solver::Variety;
+use crate::topology::Goal;
+
+/// How the exemplar is sliced.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum SlicingChoice {
+    /// Between topological events, with the default persistence for the exemplar's width.
+    #[default]
+    Reeb,
+    /// Between events of at least this persistence in millimetres.
+    Persistence(f64),
+    /// At so many equally spaced lines.
+    Uniform(usize),
+}
+
+/// Collects the options of a band. Lengths are millimetres.
+#[derive(Debug, Clone)]
+pub struct BandBuilder {
+    pub(super) exemplar: PathBuf,
+    pub(super) along: CurveSpec,
+    pub(super) width_mm: Option<f64>,
+    pub(super) goal: Goal,
+    pub(super) slicing: SlicingChoice,
+    pub(super) seed: Option<u64>,
+    pub(super) beta: f64,
+    pub(super) weights: CostWeights,
+    pub(super) thickness_mm: f64,
+    pub(super) round_mm: Option<f64>,
+    chord_mm: f64,
+    min_feature_mm: f64,
+    min_gap_mm: f64,
+}
+
+/// The thickness of a solid when none is asked for, in millimetres: five layers or more of most printers.
+const DEFAULT_THICKNESS_MM: f64 = 2.0;
+
+impl BandBuilder {
+    /// A band of the exemplar in an SVG file along a curve.
+    pub fn new(exemplar: impl AsRef<Path>, along: CurveSpec) -> Self {
+        Self {
+            exemplar: exemplar.as_ref().to_owned(),
+            along,
+            width_mm: None,
+            goal: Goal::default(),
+            slicing: SlicingChoice::default(),
+            seed: None,
+            beta: 0.0,
+            weights: CostWeights::default(),
+            thickness_mm: DEFAULT_THICKNESS_MM,
+            round_mm: None,
+            chord_mm: Tolerances::DEFAULT_CHORD_MM,
+            min_feature_mm: 0.0,
+            min_gap_mm: 0.0,
+        }
+    }
+
+    /// The height H of the band, to which the exemplar is scaled; left out, it is the exemplar's own.
+    pub fn width_mm(mut self, width_mm: f64) -> Self {
+        self.width_mm = Some(width_mm);
+        self
+    }
+
+    /// The number of connected components; left out, it is free.
+    pub fn components(mut self, components: u32) -> Self {
+        self.goal.components = Some(components);
+        self
+    }
+
+    /// The number of holes; left out, it is free. The inside of a closed ring counts as one.
+    pub fn holes(mut self, holes: u32) -> Self {
+        self.goal.holes = Some(holes);
+        self
+    }
+
+    /// Whether some component must go all the way round (closed curves only).
+    pub fn closed_pattern(mut self, closed_pattern: bool) -> Self {
+        self.goal.closed_pattern = closed_pattern;
+        self
+    }
+
+    /// How the exemplar is sliced.
+    pub fn slicing(mut self, slicing: SlicingChoice) -> Self {
+        self.slicing = slicing;
+        self
+    }
+
+    /// Another seed gives another band near the optimum; without one it is the optimum.
+    pub fn seed(mut self, seed: u64) -> Self {
+        self.seed = Some(seed);
+        self
+    }
+
+    /// The weight β of the autocorrelation (Zhou 2014 §3.7); 0 leaves it out.
+    pub fn variety(mut self, beta: f64) -> Self {
+        self.beta = beta;
+        self
+    }
+
+    /// The weight α of positions against tangents (Zhou 2014 §3.6.1).
+    pub fn alpha(mut self, alpha: f64) -> Self {
+        self.weights.alpha = alpha;
+        self
+    }
+
+    /// The cost λ of a jump.
+    pub fn jump_cost(mut self, jump: f64) -> Self {
+        self.weights.jump = jump;
+        self
+    }
+
+    /// The thickness of the solid.
+    pub fn thickness_mm(mut self, thickness_mm: f64) -> Self {
+        self.thickness_mm = thickness_mm;
+        self
+    }
+
+    /// The narrowest ink that the machine makes; 0 is not checked.
+    pub fn min_feature_mm(mut self, min_feature_mm: f64) -> Self {
+        self.min_feature_mm = min_feature_mm;
+        self
+    }
+
+    /// The narrowest gap that the machine keeps open; 0 is not checked.
+    pub fn min_gap_mm(mut self, min_gap_mm: f64) -> Self {
+        self.min_gap_mm = min_gap_mm;
+        self
+    }
+
+    /// The greatest distance between a curve and what stands for it in the files.
+    pub fn chord_mm(mut self, chord_mm: f64) -> Self {
+        self.chord_mm = chord_mm;
+        self
+    }
+
+    /// The radius to which corners of the curve are rounded; without one, a corner is an error.
+    pub fn round_mm(mut self, radius_mm: f64) -> Self {
+        self.round_mm = Some(radius_mm);
+        self
+    }
+
+    /// Checks every option by its name.
+    ///
+    /// # Errors
+    /// [`JobError`] names the first option that is out of range or contradicts another.
+    pub fn build(self) -> Result<BandJob, JobError> {
+        self.weights.validate()?;
+        let tolerances = Tolerances::new(self.chord_mm, self.min_feature_mm, self.min_gap_mm)?;
+        if let Some(width) = self.width_mm {
+            in_range("--width", width, 0.1, 10_000.0)?;
+        }
+        in_range("--thickness", self.thickness_mm, 0.001, 10_000.0)?;
+        if !(0.0..=1e6).contains(&self.beta) {
+            return Err(out_of_range("--variety", self.beta, "it must be from 0 to 1000000"));
+        }
+        if self.goal.components == Some(0) {
+            return Err(JobError::Option {
+                option: "--components",
+                found: "0 components is no band".to_owned(),
+                wanted: "ask for 1 or more, or leave it out".to_owned(),
+            });
+        }
+        if self.goal.closed_pattern && self.goal.holes == Some(0) {
+            return Err(JobError::Option {
+                option: "--closed-pattern",
+                found: "a pattern that goes all the way round has a hole, its inside, but --holes 0 was asked for"
+                    .to_owned(),
+                wanted: "ask for --holes 1 or more, or leave one of the two out".to_owned(),
+            });
+        }
+        let variety = (self.beta > 0.0).then_some(Variety { beta: self.beta });
+        Ok(BandJob { options: self, tolerances, variety })
+    }
+}
+
+fn in_range(option: &'static str, value: f64, low: f64, high: f64) -> Result<(), JobError> {
+    if (low..=high).contains(&value) {
+        return Ok(());
+    }
+    Err(out_of_range(option, value, &format!("it must be from {low} to {high} mm")))
+}
+
+fn out_of_range(option: &'static str, value: f64, wanted: &str) -> JobError {
+    JobError::Option { option, found: format!("{value} is out of range"), wanted: wanted.to_owned() }
+}
+
+/// A band whose options are in order.
+#[derive(Debug, Clone)]
+pub struct BandJob {
+    pub(super) options: BandBuilder,
+    pub(super) tolerances: Tolerances,
+    pub(super) variety: Option<Variety>,
+}
+
+impl BandJob {
+    /// Makes the band; `progress` is told of each stage as it begins.
+    ///
+    /// # Errors
+    /// [`JobError`] says why there is no band, and what would work.
+    pub fn run(&self, progress: &mut dyn FnMut(Stage)) -> Result<Band, JobError> {
+        Band::new(self, progress)
+    }
+}

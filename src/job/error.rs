@@ -1,0 +1,120 @@
+//! Everything that can end a job, and with which exit code.
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use crate::domain::DomainError;
+use crate::exemplar::ExemplarError;
+use crate::export::ExportError;
+use crate::fabricate::FabricateError;
+use crate::fit::FitError;
+use crate::pieces::CostWeightsError;
+use crate::planar::TolerancesError;
+use crate::reeb::SlicingError;
+use crate::verify::{Mismatch, VerifyError};
+
+/// Why a job ended without its files.
+#[derive(Debug, Error)]
+pub enum JobError {
+    /// The exemplar or the file of the curve.
+    #[error(transparent)]
+    Exemplar(#[from] ExemplarError),
+    /// The curve cannot carry the band.
+    #[error(transparent)]
+    Domain(#[from] DomainError),
+    /// The exemplar cannot be sliced.
+    #[error(transparent)]
+    Slicing(#[from] SlicingError),
+    /// A tolerance out of range.
+    #[error(transparent)]
+    Tolerances(#[from] TolerancesError),
+    /// A weight out of range.
+    #[error(transparent)]
+    Weights(#[from] CostWeightsError),
+    /// An option out of range, or two that contradict each other.
+    #[error("{option}: {found}; {wanted}")]
+    Option {
+        /// The option.
+        option: &'static str,
+        /// What was found.
+        found: String,
+        /// What would work.
+        wanted: String,
+    },
+    /// No sequence of pieces meets the constraints.
+    #[error("{0}")]
+    Refused(String),
+    /// The search was given up before it found a sequence.
+    #[error(
+        "the search for a sequence was given up after {labels} partial runs, without finding one and without showing that there is none; try a shorter curve, fewer constraints, or coarser --slicing uniform:T"
+    )]
+    SearchTooLarge {
+        /// Labels made until then.
+        labels: usize,
+    },
+    /// A sequence that the catalogue does not know: a bug of ours.
+    #[error("internal error, please report it: {0}")]
+    Fit(#[from] FitError),
+    /// The mapped outline does not have the planned topology.
+    #[error(
+        "the outline came out with {found_components} component(s) and {found_holes} hole(s) where {components} and {holes} were planned{place}; the ornament has ink or gaps finer than the chord error: use a smaller --chord or a larger --width. Nothing was written"
+    )]
+    Outline {
+        /// Components found.
+        found_components: usize,
+        /// Holes found.
+        found_holes: usize,
+        /// Components planned.
+        components: usize,
+        /// Holes planned.
+        holes: usize,
+        /// Where contours touch, if they do.
+        place: String,
+    },
+    /// The solid cannot be made.
+    #[error(transparent)]
+    Fabricate(#[from] FabricateError),
+    /// A file cannot be made or written.
+    #[error(transparent)]
+    Export(#[from] ExportError),
+    /// A file was written but cannot be judged.
+    #[error("{}: {error}; nothing was written under this name", file.display())]
+    Unjudged {
+        /// The output.
+        file: PathBuf,
+        /// Why.
+        error: VerifyError,
+    },
+    /// A file failed verification.
+    #[error("{}: {mismatch}{remedy}. Nothing was written", file.display())]
+    Mismatch {
+        /// The output.
+        file: PathBuf,
+        /// What is not as asked for.
+        mismatch: Mismatch,
+        /// What would help.
+        remedy: String,
+    },
+}
+
+impl JobError {
+    /// The exit code: 2 wrong input or arguments, 3 constraints that cannot be met, 4 failed verification, 1 a
+    /// bug of ours.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Exemplar(_)
+            | Self::Domain(_)
+            | Self::Tolerances(_)
+            | Self::Weights(_)
+            | Self::Option { .. }
+            | Self::Export(_) => 2,
+            Self::Slicing(SlicingError::TooThin { .. }) => 3,
+            Self::Slicing(_) => 2,
+            Self::Refused(_) | Self::SearchTooLarge { .. } => 3,
+            Self::Fabricate(FabricateError::Thickness { .. }) => 2,
+            Self::Outline { .. } | Self::Fabricate(_) | Self::Unjudged { .. } | Self::Mismatch { .. } => 4,
+            Self::Fit(_) => 1,
+        }
+    }
+}

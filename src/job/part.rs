@@ -1,0 +1,74 @@
+//! From an outline in band coordinates to the part on its page.
+
+use glam::DVec2;
+
+use super::error::JobError;
+use crate::domain::BandMap;
+use crate::fabricate::snapped_to_f32;
+use crate::fit::Outline;
+use crate::planar::{Contour, Grid, Region, RegionError};
+use crate::topology::Topology;
+
+/// Blank page around the part, in millimetres.
+pub(super) const MARGIN_MM: f64 = 1.0;
+
+/// A part on its page.
+#[derive(Debug, Clone)]
+pub(super) struct Part {
+    /// The part, y up from the lower left corner of the page, on a grid that 32-bit floats hold exactly.
+    pub(super) region: Region,
+    /// Width and height of the page.
+    pub(super) page_mm: DVec2,
+}
+
+/// Why an outline is no part.
+pub(super) enum PartError {
+    /// It cannot be, whatever the chord error.
+    Job(JobError),
+    /// Contours touch, or the counts are not as planned: a smaller chord error may help.
+    Untrue { components: usize, holes: usize, place: String },
+}
+
+impl Part {
+    /// `outline` mapped along the curve, placed on its page, snapped once, and counted against the plan.
+    pub(super) fn new(
+        outline: &Outline,
+        map: &BandMap,
+        planned: Topology,
+        chord_mm: f64,
+    ) -> Result<Self, PartError> {
+        let mapped: Vec<Vec<DVec2>> =
+            outline.contours.iter().map(|c| map.map_contour(&c.points, c.winding, chord_mm)).collect();
+        let points = || mapped.iter().flatten();
+        let low = points().copied().reduce(DVec2::min).unwrap_or_default();
+        let high = points().copied().reduce(DVec2::max).unwrap_or_default();
+        let shift = DVec2::splat(MARGIN_MM) - low;
+        let page_mm = high - low + 2.0 * MARGIN_MM;
+        let exact = Grid::for_extent(page_mm.max_element())
+            .map_err(|e| PartError::Job(JobError::Fabricate(e.into())))?;
+        let mut contours = Vec::with_capacity(mapped.len());
+        for path in &mapped {
+            let snapped: Result<Vec<_>, _> = path.iter().map(|&p| exact.snap(p + shift)).collect();
+            let snapped = snapped.map_err(|e| PartError::Job(JobError::Fabricate(e.into())))?;
+            contours.extend(Contour::new(snapped));
+        }
+        let untrue = |region: Option<&Region>, place: String| PartError::Untrue {
+            components: region.map_or(0, Region::components),
+            holes: region.map_or(0, Region::holes),
+            place,
+        };
+        let region = Region::from_contours(exact, contours).map_err(|error| match error {
+            RegionError::Invalid { faults } => {
+                let p = faults[0].position_mm();
+                untrue(None, format!(" (contours meet at ({:.3}, {:.3}) mm on the page)", p.x, p.y))
+            }
+            RegionError::Grid(e) => PartError::Job(JobError::Fabricate(e.into())),
+        })?;
+        let region = snapped_to_f32(&region).map_err(|e| PartError::Job(JobError::Fabricate(e)))?;
+        let counts = (region.components(), region.holes());
+        if counts != (planned.components as usize, planned.holes as usize) {
+            return Err(untrue(Some(&region), String::new()));
+        }
+        Ok(Self { region, page_mm })
+    }
+}

@@ -1,0 +1,143 @@
+//! Refusals in words: which constraint cannot be met, why, and what can be had.
+
+use crate::pieces::Catalogue;
+use crate::solver::Refusal;
+use crate::topology::{Goal, Shape};
+
+use super::plan::PlanOptions;
+
+/// The message for a refusal.
+pub(super) fn message(
+    catalogue: &Catalogue,
+    options: &PlanOptions,
+    refusal: &Refusal,
+    bin_mm: f64,
+) -> String {
+    let along = format!("along {:.1} mm", options.length_mm);
+    let Goal { components, holes, .. } = options.goal;
+    match *refusal {
+        Refusal::Length { below, above } => lengths(catalogue, options, below, above, bin_mm),
+        Refusal::Drift => format!(
+            "every sequence {along} climbs or falls out of the band; draw the ornament more level, or use --slicing uniform:T with other cuts"
+        ),
+        Refusal::ClosedPattern => format!(
+            "no sequence {along} goes all the way round: {}; leave out --closed-pattern, or take an exemplar whose strands run from end to end",
+            break_witness(catalogue)
+        ),
+        Refusal::Components { nearest } => format!(
+            "no sequence {along} has exactly {} component(s): {}; {}",
+            components.unwrap_or(0),
+            component_witness(catalogue, options),
+            nearest_hint("--components", nearest)
+        ),
+        Refusal::Holes { nearest } => format!(
+            "no sequence {along} has exactly {} hole(s): {}; {}",
+            holes.unwrap_or(0),
+            hole_witness(catalogue, options),
+            nearest_hint("--holes", nearest)
+        ),
+        Refusal::Both { nearest_holes } => format!(
+            "{} component(s) can be had {along}, and {} hole(s) can, but not both in one sequence; {}",
+            components.unwrap_or(0),
+            holes.unwrap_or(0),
+            nearest_hint("--holes", nearest_holes)
+        ),
+    }
+}
+
+fn nearest_hint(option: &str, nearest: Option<u32>) -> String {
+    match nearest {
+        Some(n) => format!("the nearest that can be had is {option} {n}"),
+        None => format!("leave out {option} to see what can be had"),
+    }
+}
+
+fn lengths(
+    catalogue: &Catalogue,
+    options: &PlanOptions,
+    below: Option<u32>,
+    above: Option<u32>,
+    bin_mm: f64,
+) -> String {
+    let mm = |bins: u32| format!("{:.1} mm", f64::from(bins) * bin_mm);
+    let can = match (below, above) {
+        (None, None) => {
+            let why = match options.shape {
+                Shape::Open => "no piece that the exemplar can begin with leads to one that it can end with",
+                Shape::Ring => "no piece leads back to itself through compatible cuts",
+            };
+            return format!(
+                "no sequence of the {} piece(s) exists at all: {why}; try --slicing uniform:T, or an exemplar with more cuts",
+                catalogue.pieces().len()
+            );
+        }
+        (Some(a), Some(b)) => format!("the nearest lengths that can be made are {} and {}", mm(a), mm(b)),
+        (Some(a), None) => format!("the nearest length that can be made is {}", mm(a)),
+        (None, Some(b)) => format!("the shortest that can be made is {}", mm(b)),
+    };
+    format!(
+        "no sequence of pieces is within 30 % of the curve's {:.1} mm: {can} at this width; change the curve's length, or scale the ornament with --width",
+        options.length_mm
+    )
+}
+
+/// Whether runs exist, of any length, without an empty join inside and without a piece that holds an island.
+fn unbroken_run_exists(catalogue: &Catalogue, shape: Shape) -> bool {
+    let pieces = catalogue.pieces();
+    let usable = |p: usize| pieces[p].descriptor.closed() == 0;
+    let reach = |start: usize| {
+        let mut seen = vec![false; pieces.len()];
+        let mut queue = vec![start];
+        while let Some(p) = queue.pop() {
+            let inside = catalogue.joins()[p].iter().filter(|_| !pieces[p].right.is_empty());
+            for join in inside.filter(|j| usable(j.to)) {
+                if !std::mem::replace(&mut seen[join.to], true) {
+                    queue.push(join.to);
+                }
+            }
+        }
+        seen
+    };
+    (0..pieces.len()).filter(|&p| usable(p)).any(|first| match shape {
+        Shape::Open => {
+            pieces[first].left.is_empty()
+                && (pieces[first].right.is_empty()
+                    || (0..pieces.len()).any(|p| pieces[p].right.is_empty() && reach(first)[p]))
+        }
+        Shape::Ring => reach(first)[first],
+    })
+}
+
+fn component_witness(catalogue: &Catalogue, options: &PlanOptions) -> String {
+    match options.goal.components {
+        Some(1) if !unbroken_run_exists(catalogue, options.shape) => {
+            "every run of pieces passes an empty cut, where all strands have ended, or a piece that holds an island".to_owned()
+        }
+        Some(1) => {
+            "in every run some component closes before the end, as its strands end without meeting the others".to_owned()
+        }
+        _ => "the components that the exemplar's pieces close do not add up to that number".to_owned(),
+    }
+}
+
+fn hole_witness(catalogue: &Catalogue, options: &PlanOptions) -> String {
+    let with_holes = catalogue.descriptors().iter().filter(|d| d.holes() > 0).count();
+    let pieces = catalogue.pieces().len();
+    match options.goal.holes {
+        Some(0) if with_holes > 0 => {
+            format!(
+                "{with_holes} of the {pieces} pieces have holes of their own, and joins of the others close more"
+            )
+        }
+        Some(0) => "strands that split and merge again close holes in every run".to_owned(),
+        _ => "the holes that the exemplar's pieces close do not add up to that number".to_owned(),
+    }
+}
+
+fn break_witness(catalogue: &Catalogue) -> String {
+    if unbroken_run_exists(catalogue, Shape::Ring) {
+        "in every ring the strands end somewhere".to_owned()
+    } else {
+        "every ring of pieces passes an empty cut, where all strands have ended".to_owned()
+    }
+}

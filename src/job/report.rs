@@ -1,0 +1,138 @@
+//! The report of a band, as JSON.
+
+use serde::Serialize;
+
+use crate::domain::Squeeze;
+use crate::verify::Narrowest;
+
+/// An input file.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct InputReport {
+    /// The name as it was given.
+    pub file: String,
+    /// SHA-256 of its bytes, in hexadecimal.
+    pub sha256: String,
+}
+
+/// The seams of a band.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct SeamReport {
+    /// The number of seams.
+    pub count: usize,
+    /// Of them, seams between pieces that are not neighbours in the exemplar.
+    pub jumps: usize,
+    /// The greatest angle between contours at a seam as cut, in degrees.
+    pub worst_angle_before_deg: f64,
+    /// The greatest turn of a contour at a seam after fitting, in degrees.
+    pub worst_angle_after_deg: f64,
+}
+
+/// How long a stage took.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct StageTime {
+    /// The stage.
+    pub stage: &'static str,
+    /// Wall clock.
+    pub milliseconds: f64,
+}
+
+/// What was asked for, what was made, and what was found in the files. Lengths are millimetres.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BandReport {
+    /// The version of this structure; it changes when a field changes its meaning or goes.
+    pub schema_version: u32,
+    /// The program and its version.
+    pub generator: &'static str,
+    /// The exemplar.
+    pub exemplar: InputReport,
+    /// The curve as it was given.
+    pub along: String,
+    /// The file of the curve, if it is in one.
+    pub curve: Option<InputReport>,
+    /// The seed, if one was given.
+    pub seed: Option<u64>,
+    /// Components that were asked for.
+    pub wanted_components: Option<u32>,
+    /// Holes that were asked for.
+    pub wanted_holes: Option<u32>,
+    /// Whether a closed pattern was asked for.
+    pub wanted_closed_pattern: bool,
+    /// Components of the written files.
+    pub components: usize,
+    /// Holes of the written files; the inside of a closed ring is one.
+    pub holes: usize,
+    /// Whether some component goes all the way round.
+    pub closed_pattern: bool,
+    /// The arc length of the curve.
+    pub length_mm: f64,
+    /// The height of the band.
+    pub width_mm: f64,
+    /// The thickness of the solid.
+    pub thickness_mm: f64,
+    /// The greatest distance between a curve and what stands for it.
+    pub chord_mm: f64,
+    /// Pieces of the exemplar.
+    pub pieces_in_exemplar: usize,
+    /// Pieces of the band.
+    pub pieces_in_result: usize,
+    /// The pieces of the band in order, by their number in the exemplar from 0.
+    pub sequence: Vec<usize>,
+    /// The cost of the sequence (Zhou 2014 §3.6.1, with jumps and rises).
+    pub cost: f64,
+    /// Whether no cheaper sequence meets the constraints; null when a seed or variety was asked for.
+    pub optimal: Option<bool>,
+    /// How much less another sequence could cost at most.
+    pub cost_gap: Option<f64>,
+    /// How many successors of each piece were considered.
+    pub successors: usize,
+    /// The part of the length by which sequences were allowed to miss it before stretching.
+    pub epsilon: f64,
+    /// The length of the sequence less the length of the curve, before stretching.
+    pub length_error_mm: f64,
+    /// What heights were multiplied by so that the band fits its width.
+    pub squash: f64,
+    /// Where the curve bends so hard that the inner side is squeezed.
+    pub squeezes: Vec<Squeeze>,
+    /// The seams.
+    pub seams: SeamReport,
+    /// Partial runs that the search made.
+    pub search_labels: usize,
+    /// States of the automaton that it met.
+    pub search_states: usize,
+    /// The narrowest ink, measured on the result.
+    pub min_feature: Option<Narrowest>,
+    /// The narrowest gap, measured on the result.
+    pub min_gap: Option<Narrowest>,
+    /// Ink of the part in square millimetres.
+    pub area_mm2: f64,
+    /// Width and height of the page.
+    pub page_mm: [f64; 2],
+    /// Vertices of the part's outline.
+    pub vertices: usize,
+    /// Straight segments and cubics in the SVG, if one was written.
+    pub svg_segments: Option<[usize; 2]>,
+    /// Facets of the STL, if one was written.
+    pub triangles: Option<usize>,
+    /// Shells of the STL.
+    pub shells: Option<usize>,
+    /// Total genus of the STL.
+    pub genus: Option<i64>,
+    /// Volume of the STL in cubic millimetres.
+    pub volume_mm3: Option<f64>,
+    /// The files that were written.
+    pub files: Vec<String>,
+    /// What the user may want to know.
+    pub notes: Vec<String>,
+    /// Time per stage.
+    pub times: Vec<StageTime>,
+}
+
+impl BandReport {
+    /// The report as indented JSON, ending in a line break.
+    pub fn to_json(&self) -> String {
+        let mut text =
+            serde_json::to_string_pretty(self).expect("a report has no maps with keys that are not text");
+        text.push('\n');
+        text
+    }
+}

@@ -1,0 +1,132 @@
+//! What was asked for, held against what a file has.
+
+use thiserror::Error;
+
+use super::endure::{endures_dilation, endures_erosion};
+use super::narrowest::Narrowest;
+use super::shells::{StlFault, StlReport};
+use super::svg::SvgReport;
+
+/// What a file should have.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Expected {
+    /// The number of components (shells of a solid); `None` is any.
+    pub components: Option<usize>,
+    /// The number of holes (total genus of a solid); `None` is any.
+    pub holes: Option<usize>,
+    /// The counts must stay the same after eroding by half of this; 0 asks for nothing.
+    pub min_feature_mm: f64,
+    /// The counts must stay the same after dilating by half of this; 0 asks for nothing.
+    pub min_gap_mm: f64,
+}
+
+/// The first thing that is not as expected.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum Mismatch {
+    /// Another number of components.
+    #[error("the file has {found} component(s); {wanted} were asked for")]
+    Components {
+        /// In the file.
+        found: usize,
+        /// Asked for.
+        wanted: usize,
+    },
+    /// Another number of holes.
+    #[error("the file has {found} hole(s); {wanted} were asked for")]
+    Holes {
+        /// In the file.
+        found: usize,
+        /// Asked for.
+        wanted: usize,
+    },
+    /// Ink that the machine would lose.
+    #[error("ink narrower than {wanted_mm} mm holds the pattern together{}", place(narrowest))]
+    Feature {
+        /// The width asked for.
+        wanted_mm: f64,
+        /// The narrowest place.
+        narrowest: Option<Narrowest>,
+    },
+    /// A gap that the machine would close.
+    #[error("a gap narrower than {wanted_mm} mm keeps the pattern apart{}", place(narrowest))]
+    Gap {
+        /// The width asked for.
+        wanted_mm: f64,
+        /// The narrowest place.
+        narrowest: Option<Narrowest>,
+    },
+    /// Another number of shells.
+    #[error("the solid has {found} shell(s); {wanted} were asked for")]
+    Shells {
+        /// In the file.
+        found: usize,
+        /// Asked for.
+        wanted: usize,
+    },
+    /// Another total genus.
+    #[error("the solid has {found} tunnel(s) (total genus); {wanted} were asked for")]
+    Genus {
+        /// In the file.
+        found: i64,
+        /// Asked for.
+        wanted: usize,
+    },
+    /// A solid that is not sound, so that its counts mean nothing.
+    #[error("the solid has {count} fault(s), first: {first}")]
+    Faults {
+        /// How many.
+        count: usize,
+        /// The first.
+        first: StlFault,
+    },
+}
+
+fn place(narrowest: &Option<Narrowest>) -> String {
+    narrowest.map_or_else(String::new, |n| {
+        format!(": {:.3} mm at ({:.3}, {:.3}) mm", n.width_mm, n.position_mm.x, n.position_mm.y)
+    })
+}
+
+fn same<E>(found: usize, wanted: Option<usize>, mismatch: impl Fn(usize, usize) -> E) -> Result<(), E> {
+    wanted.filter(|&wanted| wanted != found).map_or(Ok(()), |wanted| Err(mismatch(found, wanted)))
+}
+
+impl SvgReport {
+    /// Whether the file is as `expected`. Widths are tried out by eroding and dilating.
+    ///
+    /// # Errors
+    /// The first [`Mismatch`]; for a width, with the narrowest place of the file.
+    pub fn check(&self, expected: &Expected) -> Result<(), Mismatch> {
+        same(self.components, expected.components, |found, wanted| Mismatch::Components { found, wanted })?;
+        same(self.holes, expected.holes, |found, wanted| Mismatch::Holes { found, wanted })?;
+        let wanted_mm = expected.min_feature_mm;
+        if wanted_mm > 0.0 && !endures_erosion(&self.region, 0.5 * wanted_mm, self.chord_mm) {
+            return Err(Mismatch::Feature { wanted_mm, narrowest: self.min_feature });
+        }
+        let wanted_mm = expected.min_gap_mm;
+        if wanted_mm > 0.0 && !endures_dilation(&self.region, 0.5 * wanted_mm, self.chord_mm) {
+            return Err(Mismatch::Gap { wanted_mm, narrowest: self.min_gap });
+        }
+        Ok(())
+    }
+}
+
+impl StlReport {
+    /// Whether the solid is sound and as `expected`: as many shells as components, a total genus of as many
+    /// as holes. Widths are not looked at; the SVG of the same outline tells them.
+    ///
+    /// # Errors
+    /// The first [`Mismatch`].
+    pub fn check(&self, expected: &Expected) -> Result<(), Mismatch> {
+        if let Some(first) = self.faults.first() {
+            return Err(Mismatch::Faults { count: self.faults.len(), first: first.clone() });
+        }
+        same(self.shells.len(), expected.components, |found, wanted| Mismatch::Shells { found, wanted })?;
+        match expected.holes {
+            Some(wanted) if i64::try_from(wanted) != Ok(self.genus) => {
+                Err(Mismatch::Genus { found: self.genus, wanted })
+            }
+            _ => Ok(()),
+        }
+    }
+}

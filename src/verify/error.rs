@@ -1,0 +1,104 @@
+//! Why a file could not be judged at all.
+
+use thiserror::Error;
+
+use crate::planar::GridError;
+
+/// Why a file could not be judged. What can be judged but is wrong is a fault of the report instead.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum VerifyError {
+    /// More bytes than are read.
+    #[error("the file has {bytes} bytes; at most {limit} are read")]
+    TooLarge {
+        /// The size of the file.
+        bytes: usize,
+        /// The largest size that is read.
+        limit: usize,
+    },
+    /// Not UTF-8 text.
+    #[error("byte {offset} is not UTF-8 text; an uncompressed SVG in UTF-8 is wanted")]
+    NotText {
+        /// The first byte that is no text.
+        offset: usize,
+    },
+    /// Not well-formed XML.
+    #[error("not well-formed XML: {message}")]
+    Xml {
+        /// What the parser says, with line and column.
+        message: String,
+    },
+    /// Another kind of XML.
+    #[error("the root element is <{found}>; an SVG has <svg>")]
+    NotSvg {
+        /// The root element's name.
+        found: String,
+    },
+    /// Path data that cannot be read.
+    #[error("{element} on line {line}: {message}")]
+    PathData {
+        /// The element, with its id if it has one.
+        element: String,
+        /// Its line in the file.
+        line: u32,
+        /// What is wrong.
+        message: String,
+    },
+    /// Something in the SVG that paints, but not as filled or stroked paths.
+    #[error("{element} on line {line}: {what} cannot be counted; {instead}")]
+    Unsupported {
+        /// The element, with its id if it has one.
+        element: String,
+        /// Its line in the file; 0 when it is not known.
+        line: u32,
+        /// What it is.
+        what: &'static str,
+        /// What would work.
+        instead: &'static str,
+    },
+    /// The SVG does not resolve.
+    #[error("the SVG cannot be resolved: {message}")]
+    Resolve {
+        /// What the resolver says.
+        message: String,
+    },
+    /// A coordinate that is out of range or not a number.
+    #[error("{element} on line {line}: {source}")]
+    Coordinate {
+        /// The element, with its id if it has one.
+        element: String,
+        /// Its line in the file; 0 when it is not known.
+        line: u32,
+        /// What is wrong with it.
+        source: GridError,
+    },
+    /// A binary STL whose length does not agree with its header.
+    #[error(
+        "the header promises {triangles} triangles, which are {wanted} bytes, but the file has {found}: it was cut off or is no STL"
+    )]
+    Length {
+        /// The count in the header.
+        triangles: u32,
+        /// The length that goes with it, in bytes.
+        wanted: u64,
+        /// The length of the file, in bytes.
+        found: u64,
+    },
+    /// Too short for any STL.
+    #[error("{bytes} bytes are too few for an STL, which has at least 84")]
+    TooShort {
+        /// The length of the file, in bytes.
+        bytes: usize,
+    },
+    /// An ASCII STL that does not parse.
+    #[error("not a readable ASCII STL: {message}")]
+    AsciiStl {
+        /// What the parser says.
+        message: String,
+    },
+    /// A corner that is NaN or infinite.
+    #[error("facet {facet} has a corner that is not a finite number")]
+    NotFinite {
+        /// The facet, counted from 0.
+        facet: usize,
+    },
+}

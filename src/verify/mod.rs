@@ -1,0 +1,34 @@
+//! Counts what a written *file* holds: components, holes, shells, genus, the narrowest ink and gap.
+//!
+//! The promise of Openwork is about the file, not the plan. So the bytes are read again here, by code that
+//! shares nothing with the code that made them beyond [`crate::planar`], and what is found can be checked
+//! against what was asked for ([`Expected`]). [`read_svg`] fills every path under its own rule and counts on
+//! the union; [`read_stl`] welds corners by their exact bits and counts shells and genus by Euler's formula.
+//! "At the tolerance of the machine" means that the counts stay the same after eroding by half of the
+//! minimum feature and after dilating by half of the minimum gap ([`endures_erosion`],
+//! [`endures_dilation`]); where they would change first is measured by [`widths`].
+//!
+//! Excluded: repair. What cannot be judged (text, images, masks, filters, clip paths) is an error that says
+//! so; what can be judged but is not in order is a fault in the report.
+
+mod ascent;
+mod check;
+mod clearance;
+mod drawing;
+mod drawn;
+mod endure;
+mod error;
+mod json;
+mod narrowest;
+mod plain;
+mod shells;
+mod stl;
+mod svg;
+
+pub use check::{Expected, Mismatch};
+pub use endure::{endures_dilation, endures_erosion};
+pub use error::VerifyError;
+pub use narrowest::{Narrowest, Widths, min_feature, min_gap, widths};
+pub use shells::{Shell, StlFault, StlFaultKind, StlReport};
+pub use stl::read_stl;
+pub use svg::{SvgFault, SvgReport, read_svg};

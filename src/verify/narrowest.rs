@@ -1,0 +1,380 @@
+//! The narrowest ink and the narrowest gap of a region: the first that erosion or dilation would lose.
+//!
+//! Peaks and passes of the distance to the boundary ([`Clearance`]) are paired by the elder rule of
+//! persistent homology: going down from the highest value, a pass that joins two peaks ends the lower one,
+//! and a pass that closes a loop belongs to a hole. A pass whose lower peak is hardly higher is the tip of a
+//! discretised cusp or the ripple of a flattened curve: what it would cut off vanishes with a little more
+//! erosion, and it does not count. All other passes, and the highest peak of each component, are places
+//! where the counts change.
+
+use glam::DVec2;
+use serde::Serialize;
+
+use super::ascent::{Edge, Spot, ascend, nearest};
+use super::clearance::{Clearance, Way};
+use crate::planar::Region;
+
+/// By how much a peak may be higher than the triangulation tells. Smaller, and a neck with little behind it is
+/// overlooked; larger, and more ripples are climbed for nothing.
+const PEAK_DOUBT: f64 = 1.25;
+
+/// Legs of a climb to a peak, each at most as long as the radius there.
+const CLIMBS: usize = 32;
+
+/// A narrowest place: its width, and the middle of it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Narrowest {
+    /// The width in millimetres: eroding (or dilating) by half of it changes the counts.
+    pub width_mm: f64,
+    /// The middle of the place in millimetres, y up.
+    #[serde(serialize_with = "super::json::point")]
+    pub position_mm: DVec2,
+}
+
+/// The narrowest ink and the narrowest gap of a region.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Widths {
+    /// The ink that erosion loses first: a neck that breaks, a wall that opens a hole, a part that vanishes.
+    pub feature: Option<Narrowest>,
+    /// The gap that dilation loses first: parts that meet, a hole or the mouth of a bay that closes.
+    pub gap: Option<Narrowest>,
+}
+
+/// The narrowest ink of `region` up to `limit_mm` wide; `None` when there is none so narrow.
+///
+/// What would be cut off, but with `chord_mm` more erosion vanishes, does not count: sharp tips.
+pub fn min_feature(region: &Region, limit_mm: f64, chord_mm: f64) -> Option<Narrowest> {
+    widths(region, chord_mm).feature.filter(|n| n.width_mm <= limit_mm)
+}
+
+/// The narrowest gap of `region` up to `limit_mm` wide; `None` when there is none so narrow.
+///
+/// What would be closed off, but with `chord_mm` more dilation fills, does not count: the ends of notches.
+pub fn min_gap(region: &Region, limit_mm: f64, chord_mm: f64) -> Option<Narrowest> {
+    widths(region, chord_mm).gap.filter(|n| n.width_mm <= limit_mm)
+}
+
+/// Both at once, for little more than the price of one. A single convex part has no gap.
+pub fn widths(region: &Region, chord_mm: f64) -> Widths {
+    let (Some(mut clearance), Some((low, high))) = (Clearance::new(region), region.bounds_mm()) else {
+        return Widths::default();
+    };
+    clearance
+        .ways
+        .sort_by(|a, b| b.narrowest.radius.total_cmp(&a.narrowest.radius).then(a.ends.cmp(&b.ends)));
+    // The way around everything runs between the ink and the frame, and is wider than any gap of the ink.
+    let outside = (high - low).length();
+    let climber = Climber::new(region);
+    let gap = first_change(&clearance, &climber, false, chord_mm).filter(|n| n.width_mm < outside);
+    Widths { feature: first_change(&clearance, &climber, true, chord_mm), gap }
+}
+
+/// A place where the counts may change.
+struct Change {
+    spot: Spot,
+    /// A pass that does not count unless this peak behind it is higher than the triangulation tells.
+    unless_higher: Option<Spot>,
+    /// Whether a component vanishes here, so that the peak itself should be sharpened.
+    is_peak: bool,
+}
+
+/// The narrowest change that holds when the peaks in question are climbed on the boundary itself.
+fn first_change(clearance: &Clearance, climber: &Climber, ink: bool, chord_mm: f64) -> Option<Narrowest> {
+    let mut changes = changes(clearance, ink, chord_mm);
+    changes.sort_by(|a, b| a.spot.radius.total_cmp(&b.spot.radius));
+    let mut best: Option<Spot> = None;
+    for change in changes {
+        if best.is_some_and(|b| b.radius <= change.spot.radius) {
+            break;
+        }
+        let spot = match change.unless_higher {
+            _ if change.is_peak => climber.climb(change.spot),
+            Some(peak) if climber.climb(peak).radius - change.spot.radius <= chord_mm => continue,
+            _ => change.spot,
+        };
+        best = best.filter(|b| b.radius <= spot.radius).or(Some(spot));
+    }
+    best.map(|spot| Narrowest { width_mm: 2.0 * spot.radius, position_mm: spot.at })
+}
+
+/// The places where the counts of one side may change.
+fn changes(clearance: &Clearance, ink: bool, chord_mm: f64) -> Vec<Change> {
+    let mut peaks = Peaks::new(clearance);
+    let mut changes = Vec::new();
+    let on_side = |way: &&Way| clearance.places[way.ends[0]].1 == ink;
+    for way in clearance.ways.iter().filter(on_side) {
+        let [a, b] = way.ends.map(|end| peaks.find(end));
+        let lower = if a == b { None } else { Some(peaks.join(a, b)) };
+        let spot = way.narrowest;
+        let unless_higher = lower.filter(|peak| peak.radius - spot.radius <= chord_mm);
+        let doubtful = |peak: Spot| way.is_pass && peak.radius * PEAK_DOUBT - spot.radius > chord_mm;
+        if unless_higher.is_none_or(doubtful) {
+            changes.push(Change { spot, unless_higher, is_peak: false });
+        }
+    }
+    for place in 0..clearance.places.len() {
+        if clearance.places[place].1 == ink && peaks.find(place) == place {
+            changes.push(Change { spot: peaks.highest[place], unless_higher: None, is_peak: true });
+        }
+    }
+    changes
+}
+
+/// All edges of a region, for the few peaks that decide something: those of a triangulation look at the
+/// edges around one triangle only.
+struct Climber {
+    edges: Vec<Edge>,
+}
+
+impl Climber {
+    fn new(region: &Region) -> Self {
+        let grid = region.grid();
+        let edges = region.contours().flat_map(|c| c.edges().map(|(a, b)| (grid.to_mm(a), grid.to_mm(b))));
+        Self { edges: edges.collect() }
+    }
+
+    /// The peak above `start`, with its true distance to the boundary.
+    fn climb(&self, start: Spot) -> Spot {
+        let mut best = start;
+        // A climb sees the edges that can stop it, and no farther; then it looks around again.
+        for _ in 0..CLIMBS {
+            let reach = best.radius;
+            let in_sight = |&edge: &Edge| nearest(edge, best.at).distance(best.at) <= 3.0 * reach;
+            let near: Vec<Edge> = self.edges.iter().copied().filter(in_sight).collect();
+            let next = ascend(best.at, &near, reach);
+            let arrived = next.at.distance(best.at) < 0.5 * reach;
+            best = next;
+            if arrived {
+                break;
+            }
+        }
+        best
+    }
+}
+
+/// Sets of places, each with its highest peak.
+struct Peaks {
+    parent: Vec<usize>,
+    highest: Vec<Spot>,
+}
+
+impl Peaks {
+    fn new(clearance: &Clearance) -> Self {
+        Self {
+            parent: (0..clearance.places.len()).collect(),
+            highest: clearance.places.iter().map(|(spot, _)| *spot).collect(),
+        }
+    }
+
+    fn find(&mut self, mut place: usize) -> usize {
+        while self.parent[place] != place {
+            self.parent[place] = self.parent[self.parent[place]];
+            place = self.parent[place];
+        }
+        place
+    }
+
+    /// Joins two roots under the one with the higher peak; the lower peak.
+    fn join(&mut self, a: usize, b: usize) -> Spot {
+        let (over, under) = if self.highest[a].radius >= self.highest[b].radius { (a, b) } else { (b, a) };
+        self.parent[under] = over;
+        self.highest[under]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::endure::{endures_dilation, endures_erosion};
+    use super::*;
+    use crate::planar::{EdgeIndex, FillRule, Grid, GridPoint};
+    use proptest::prelude::*;
+
+    fn region(paths: &[Vec<DVec2>]) -> Region {
+        let grid = Grid::for_extent(128.0).unwrap();
+        let paths: Vec<Vec<GridPoint>> =
+            paths.iter().map(|path| path.iter().map(|&p| grid.snap(p).unwrap()).collect()).collect();
+        Region::fill(grid, &paths, FillRule::EvenOdd)
+    }
+
+    fn rectangle(x: f64, y: f64, width: f64, height: f64) -> Vec<DVec2> {
+        [(x, y), (x + width, y), (x + width, y + height), (x, y + height)].map(DVec2::from).to_vec()
+    }
+
+    fn circle(x: f64, y: f64, radius: f64, n: usize) -> Vec<DVec2> {
+        let turn = std::f64::consts::TAU / n as f64;
+        (0..n).map(|i| DVec2::new(x, y) + radius * DVec2::from_angle(i as f64 * turn)).collect()
+    }
+
+    fn assert_near(found: Option<Narrowest>, width_mm: f64, at: (f64, f64), within: f64) {
+        let found = found.unwrap();
+        assert!((found.width_mm - width_mm).abs() < 0.01, "{found:?} {width_mm}");
+        assert!(found.position_mm.distance(at.into()) < within, "{found:?} {at:?}");
+    }
+
+    #[test]
+    fn dumbbell() {
+        let bar = [(10.0, 4.0), (20.0, 4.5), (20.0, 5.5), (10.0, 6.0)].map(DVec2::from).to_vec();
+        let dumbbell = region(&[rectangle(0.0, 0.0, 10.0, 10.0), rectangle(20.0, 0.0, 10.0, 10.0), bar]);
+        assert_eq!(dumbbell.components(), 1);
+        assert_near(min_feature(&dumbbell, 10.0, 0.01), 1.0, (20.0, 5.0), 0.1);
+        assert_eq!(min_feature(&dumbbell, 0.9, 0.01), None);
+        // A bay of constant width has no mouth, and closes evenly.
+        assert_eq!(min_gap(&dumbbell, 100.0, 0.01), None);
+    }
+
+    #[test]
+    fn thin_wall_and_hole() {
+        let ring = region(&[circle(0.0, 0.0, 10.0, 90), circle(1.0, 0.0, 8.5, 90)]);
+        assert_near(min_feature(&ring, 10.0, 0.01), 0.5, (9.75, 0.0), 1.0);
+        assert_near(min_gap(&ring, 20.0, 0.01), 17.0 * (2f64.to_radians()).cos(), (1.0, 0.0), 0.3);
+    }
+
+    #[test]
+    fn neighbours() {
+        let two = region(&[rectangle(0.0, 0.0, 5.0, 5.0), rectangle(5.25, 1.0, 7.0, 2.0)]);
+        assert_near(min_feature(&two, 10.0, 0.01), 2.0, (8.75, 2.0), 2.6);
+        assert_near(min_gap(&two, 10.0, 0.01), 0.25, (5.125, 2.0), 1.5);
+    }
+
+    #[test]
+    fn a_star_tip_is_no_neck() {
+        // Ten-pointed star with tips of 6 degrees: the narrowest ink is its middle.
+        let star = (0..20).map(|i| {
+            let radius = if i % 2 == 0 { 40.0 } else { 6.0 };
+            radius * DVec2::from_angle(f64::from(i) * std::f64::consts::TAU / 20.0)
+        });
+        let star = region(&[star.collect()]);
+        assert_near(min_feature(&star, 50.0, 0.01), 12.0, (0.0, 0.0), 0.1);
+        assert_eq!(min_gap(&star, 100.0, 0.01), None);
+    }
+
+    #[test]
+    fn a_discretised_cusp_is_no_neck() {
+        // A horn whose sides meet in a cusp, with as many points on one side as do not suit the other.
+        let side = |n: i32, sign: f64| {
+            (0..n).map(move |i| {
+                let t = f64::from(i) / f64::from(n);
+                DVec2::new(30.0 * t, sign * 3.0 * (1.0 - t).powi(2))
+            })
+        };
+        let tip = std::iter::once(DVec2::new(30.0, 0.0));
+        let horn: Vec<DVec2> =
+            side(61, -1.0).chain(tip).chain(side(37, 1.0).collect::<Vec<_>>().into_iter().rev()).collect();
+        let horn = region(&[horn]);
+        let found = min_feature(&horn, 50.0, 0.01).unwrap();
+        assert!(found.width_mm > 4.0, "{found:?}");
+    }
+
+    #[test]
+    fn a_spiral_is_as_wide_as_its_strand_and_its_gap() {
+        let arm = |offset: f64| {
+            (0..=300).map(move |i| {
+                let angle = f64::from(i) * 0.06;
+                DVec2::from_angle(angle) * (2.0 + offset + 2.0 * angle / std::f64::consts::TAU)
+            })
+        };
+        let spiral = region(&[arm(0.0).chain(arm(1.2).collect::<Vec<_>>().into_iter().rev()).collect()]);
+        let found = widths(&spiral, 0.01);
+        assert!((found.feature.unwrap().width_mm - 1.19).abs() < 0.03, "{found:?}");
+        // A gap that is open at its end and hardly widens closes evenly; its mouth is no narrow place.
+        assert!(found.gap.is_none_or(|n| n.width_mm > 0.75), "{found:?}");
+    }
+
+    #[test]
+    fn nothing_has_no_width() {
+        assert_eq!(widths(&Region::empty(Grid::for_extent(10.0).unwrap()), 0.01), Widths::default());
+    }
+
+    fn blob() -> impl Strategy<Value = Vec<DVec2>> {
+        let place = (-20.0..20.0f64, -20.0..20.0f64, 0.0..6.3f64);
+        let shape = prop_oneof![
+            (1.0..12.0, 0.3..6.0).prop_map(|(w, h): (f64, f64)| rectangle(-w, -h / 2.0, 2.0 * w, h)),
+            (0.5..9.0f64, 3..40usize).prop_map(|(r, n)| circle(0.0, 0.0, r, n)),
+            proptest::collection::vec(0.5..9.0f64, 5..16).prop_map(|radii| {
+                let turn = std::f64::consts::TAU / radii.len() as f64;
+                radii.iter().enumerate().map(|(i, r)| DVec2::from_angle(i as f64 * turn) * *r).collect()
+            }),
+        ];
+        (place, shape).prop_map(|((x, y, angle), shape)| {
+            let turn = DVec2::from_angle(angle);
+            shape.into_iter().map(|p: DVec2| turn.rotate(p) + DVec2::new(x, y)).collect()
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
+
+        /// Whole offsets, which share nothing with the triangulation, change the counts just above the width
+        /// and not below. "Just above" has to be close: what a pass cuts off may vanish soon after. Other chords
+        /// decide what is a crumb, as the two may differ on one that is just as large as the limit.
+        #[test]
+        fn offsets_agree(paths in proptest::collection::vec(blob(), 1..9)) {
+            let chord = 0.01;
+            let region = region(&paths);
+            prop_assume!(!region.is_empty());
+            let widths = widths(&region, chord);
+            let index = EdgeIndex::new(&region);
+            let endures: [fn(&Region, f64, f64) -> bool; 2] = [endures_erosion, endures_dilation];
+            for (found, endures) in [widths.feature, widths.gap].into_iter().zip(endures) {
+                let Some(found) = found else { continue };
+                let radius = 0.5 * found.width_mm;
+                let nearest = index.nearest(found.position_mm).unwrap().nearest(found.position_mm);
+                prop_assert!((nearest.distance(found.position_mm) - radius).abs() < 1e-6, "{:?}", found);
+                for part in [0.3, 0.6, 0.9, 0.985] {
+                    prop_assert!(endures(&region, part * radius, 2.0 * chord), "at {} of {:?}", part, found);
+                }
+                prop_assert!(!endures(&region, radius + 0.25 * chord, 0.25 * chord), "above {:?}", found);
+            }
+        }
+    }
+}
+#[cfg(test)]
+mod debug {
+    use super::super::endure::*;
+    use super::*;
+    use crate::planar::{FillRule, Grid, GridPoint};
+    #[test]
+    fn dbg() {
+        let g = Grid::for_extent(128.0).unwrap();
+        let v = [
+            vec![
+                (13.670256456531277, 4.350157131185789),
+                (4.506125233178294, 17.285310992327325),
+                (3.289185461267633, 16.423149174970916),
+                (12.453316684620614, 3.48799531382938),
+            ],
+            vec![
+                (8.103919120572304, 19.036462757764088),
+                (5.908814010948243, 10.91087886815167),
+                (11.848223525122139, 4.947070134433998),
+                (19.982738148920095, 7.1088452903287465),
+                (22.177843258544158, 15.234429179941163),
+                (16.238433744370266, 21.198237913658836),
+            ],
+        ];
+        let p: Vec<Vec<GridPoint>> =
+            v.iter().map(|c| c.iter().map(|&q| g.snap(q.into()).unwrap()).collect()).collect();
+        let r = Region::fill(g, &p, FillRule::EvenOdd);
+        let c = Clearance::new(&r).unwrap();
+        eprintln!("{} {} {:?}", r.components(), r.holes(), widths(&r, 0.01));
+        for part in r.parts() {
+            eprintln!(
+                "{:?}",
+                part.contours()
+                    .map(|c| c.points().iter().map(|&p| g.to_mm(p).to_array()).collect::<Vec<_>>())
+                    .collect::<Vec<_>>()
+            );
+        }
+        let mut ch = changes(&c, true, 0.01);
+        ch.sort_by(|a, b| a.spot.radius.total_cmp(&b.spot.radius));
+        let climber = Climber::new(&r);
+        for c in ch.iter().take(6) {
+            eprintln!("{:?} {:?} {} climbed {:?}", c.spot, c.unless_higher, c.is_peak, climber.climb(c.spot));
+        }
+        for k in -3..10 {
+            let x = ch[0].spot.radius + 0.001 * k as f64;
+            let e = r.offset(-x, 0.0001);
+            eprintln!("{x} {} {} {}", e.components(), e.holes(), endures_erosion(&r, x, 0.0025));
+        }
+    }
+}

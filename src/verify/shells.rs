@@ -1,0 +1,345 @@
+//! Shells, genus and volume of a triangle soup, and whether it is the boundary of a solid.
+//!
+//! Corners with the same `f32` coordinates are one vertex; nothing else is welded. Facets that share an edge
+//! are one shell. A shell is closed when each of its edges is used exactly twice, in opposite directions;
+//! then its genus is 1 − χ/2 with χ = V − E + F. Vertices are counted as fans of facets, so that a point at
+//! which two fans meet (a fault) does not upset the genus. Excluded: facets that cross each other.
+
+use std::fmt;
+
+use glam::DVec3;
+use rustc_hash::{FxHashMap, FxHashSet};
+use serde::Serialize;
+
+/// Faults that a report prints for people; the list itself is complete.
+pub(super) const FAULTS_SHOWN: usize = 10;
+
+/// One facet as the file has it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Facet {
+    pub(super) normal: [f32; 3],
+    pub(super) corners: [[f32; 3]; 3],
+}
+
+/// What an STL holds, in millimetres.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StlReport {
+    /// The number of facets.
+    pub triangles: usize,
+    /// The number of different corners.
+    pub vertices: usize,
+    /// The connected surfaces, in the order of their first facets.
+    pub shells: Vec<Shell>,
+    /// The sum of the genus of all closed shells: the number of tunnels.
+    pub genus: i64,
+    /// The volume enclosed.
+    pub volume_mm3: f64,
+    /// The smallest and largest coordinates; `None` without facets.
+    pub bounds_mm: Option<([f64; 3], [f64; 3])>,
+    /// Why this is not the boundary of a solid; empty when it is.
+    pub faults: Vec<StlFault>,
+}
+
+/// One connected surface.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Shell {
+    /// The number of facets.
+    pub triangles: usize,
+    /// The genus; `None` when the shell is not closed.
+    pub genus: Option<i64>,
+    /// The volume enclosed: positive when the facets face outwards, negative around a cavity.
+    pub volume_mm3: f64,
+}
+
+/// A place where facets are not the boundary of a solid. Facets count from 0, in the order of the file.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StlFault {
+    /// What is wrong.
+    pub kind: StlFaultKind,
+    /// The facet, or the first one of several.
+    pub facet: usize,
+    /// Where, in millimetres.
+    pub position_mm: [f64; 3],
+}
+
+/// The ways in which facets can fail to bound a solid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StlFaultKind {
+    /// The facet has no area.
+    Degenerate,
+    /// The facet has the corners of an earlier one.
+    Duplicate,
+    /// The facet's normal points against its winding.
+    Normal,
+    /// Only one facet has this edge.
+    OpenEdge,
+    /// Two facets run along this edge in the same direction.
+    FlippedEdge,
+    /// More than two facets share this edge.
+    CrowdedEdge,
+    /// Surfaces meet in this point only.
+    PinchedVertex,
+    /// The shell of this facet faces inwards and is no cavity of another.
+    InsideOut,
+}
+
+impl fmt::Display for StlFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let what = match self.kind {
+            StlFaultKind::Degenerate => "has no area",
+            StlFaultKind::Duplicate => "has the corners of an earlier facet",
+            StlFaultKind::Normal => "has a normal against its winding",
+            StlFaultKind::OpenEdge => "has an edge without a second facet",
+            StlFaultKind::FlippedEdge => "runs along an edge in the same direction as another facet",
+            StlFaultKind::CrowdedEdge => "has an edge with more than two facets",
+            StlFaultKind::PinchedVertex => "has a corner in which surfaces meet in one point only",
+            StlFaultKind::InsideOut => "is on a shell that faces inwards",
+        };
+        let [x, y, z] = self.position_mm;
+        write!(f, "facet {} {what} at ({x:.4}, {y:.4}, {z:.4}) mm", self.facet)
+    }
+}
+
+impl fmt::Display for StlReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "triangles    {}", self.triangles)?;
+        writeln!(f, "shells       {}", self.shells.len())?;
+        writeln!(f, "genus        {}", self.genus)?;
+        writeln!(f, "volume       {:.3} mm3", self.volume_mm3)?;
+        write!(f, "faults       {}", self.faults.len())?;
+        self.faults.iter().take(FAULTS_SHOWN).try_for_each(|fault| write!(f, "\n  {fault}"))
+    }
+}
+
+/// Counts shells and genus, and looks for faults.
+pub(super) fn survey(facets: &[Facet]) -> StlReport {
+    let soup = Soup::weld(facets);
+    let mut faults = soup.facet_faults(facets);
+    let mut shells = Sets::new(facets.len());
+    let mut fans = Sets::new(3 * facets.len());
+    let sides = soup.sides();
+    // The facet that stands for each edge, with whether the edge is sound.
+    let mut edges: Vec<(usize, bool)> = Vec::with_capacity(sides.len() / 2);
+    for edge in sides.chunk_by(|a, b| a.ends == b.ends) {
+        let fault = match edge {
+            [a, b] if a.forward != b.forward => None,
+            [_] => Some(StlFaultKind::OpenEdge),
+            [_, _] => Some(StlFaultKind::FlippedEdge),
+            _ => Some(StlFaultKind::CrowdedEdge),
+        };
+        for pair in edge.windows(2) {
+            shells.join(pair[0].facet, pair[1].facet);
+            for end in edge[0].ends {
+                fans.join(soup.corner(pair[0].facet, end), soup.corner(pair[1].facet, end));
+            }
+        }
+        edges.push((edge[0].facet, fault.is_none()));
+        faults.extend(fault.map(|kind| {
+            let [p, q] = edge[0].ends.map(|v| soup.at[v]);
+            StlFault { kind, facet: edge[0].facet, position_mm: ((p + q) * 0.5).to_array() }
+        }));
+    }
+    faults.extend(soup.pinched(&mut fans));
+    let (shells, inside_out) = soup.shells(&mut shells, &mut fans, &edges);
+    faults.extend(inside_out);
+    let corner = |pick: fn(DVec3, DVec3) -> DVec3| soup.at.iter().copied().reduce(pick);
+    StlReport {
+        triangles: facets.len(),
+        vertices: soup.at.len(),
+        genus: shells.iter().filter_map(|s| s.genus).sum(),
+        volume_mm3: shells.iter().map(|s| s.volume_mm3).sum(),
+        bounds_mm: corner(DVec3::min).zip(corner(DVec3::max)).map(|(a, b)| (a.to_array(), b.to_array())),
+        shells,
+        faults,
+    }
+}
+
+/// Facets with their corners welded.
+struct Soup {
+    at: Vec<DVec3>,
+    facets: Vec<[usize; 3]>,
+}
+
+/// One use of an edge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Side {
+    /// The lower vertex, then the higher.
+    ends: [usize; 2],
+    facet: usize,
+    /// Whether the facet runs from the lower vertex to the higher.
+    forward: bool,
+}
+
+impl Soup {
+    fn weld(facets: &[Facet]) -> Self {
+        let mut known: FxHashMap<[u32; 3], usize> = FxHashMap::default();
+        let mut at = Vec::new();
+        let welded = facets.iter().map(|facet| {
+            facet.corners.map(|p| {
+                // Adding zero makes one number of both zeros.
+                *known.entry(p.map(|x| (x + 0.0).to_bits())).or_insert_with(|| {
+                    at.push(DVec3::from_array(p.map(f64::from)));
+                    at.len() - 1
+                })
+            })
+        });
+        let facets = welded.collect();
+        Self { at, facets }
+    }
+
+    fn corner(&self, facet: usize, vertex: usize) -> usize {
+        3 * facet + self.facets[facet].iter().position(|&v| v == vertex).expect("an edge ends in corners")
+    }
+
+    fn points(&self, facet: usize) -> [DVec3; 3] {
+        self.facets[facet].map(|v| self.at[v])
+    }
+
+    /// Every side of every facet with three corners, by edge.
+    fn sides(&self) -> Vec<Side> {
+        let mut sides = Vec::with_capacity(3 * self.facets.len());
+        for (facet, &[a, b, c]) in self.facets.iter().enumerate() {
+            for (p, q) in [(a, b), (b, c), (c, a)] {
+                if p != q {
+                    sides.push(Side { ends: [p.min(q), p.max(q)], facet, forward: p < q });
+                }
+            }
+        }
+        sides.sort_unstable();
+        sides
+    }
+
+    fn facet_faults(&self, given: &[Facet]) -> Vec<StlFault> {
+        let mut faults = Vec::new();
+        let mut seen: FxHashSet<[usize; 3]> = FxHashSet::default();
+        for (facet, &corners) in self.facets.iter().enumerate() {
+            let [a, b, c] = self.points(facet);
+            let position_mm = ((a + b + c) / 3.0).to_array();
+            let mut add = |kind| faults.push(StlFault { kind, facet, position_mm });
+            let normal = (b - a).cross(c - a);
+            if normal == DVec3::ZERO {
+                add(StlFaultKind::Degenerate);
+            } else if normal.dot(DVec3::from_array(given[facet].normal.map(f64::from))) < 0.0 {
+                add(StlFaultKind::Normal);
+            }
+            let mut sorted = corners;
+            sorted.sort_unstable();
+            if !seen.insert(sorted) {
+                add(StlFaultKind::Duplicate);
+            }
+        }
+        faults
+    }
+
+    /// The vertices with more than one fan of facets.
+    fn pinched(&self, fans: &mut Sets) -> Vec<StlFault> {
+        let mut fan_of = vec![usize::MAX; self.at.len()];
+        let mut reported = vec![false; self.at.len()];
+        let mut faults = Vec::new();
+        for (facet, corners) in self.facets.iter().enumerate() {
+            for (i, &v) in corners.iter().enumerate() {
+                let fan = fans.find(3 * facet + i);
+                if fan_of[v] == usize::MAX {
+                    fan_of[v] = fan;
+                } else if fan_of[v] != fan && !std::mem::replace(&mut reported[v], true) {
+                    let position_mm = self.at[v].to_array();
+                    faults.push(StlFault { kind: StlFaultKind::PinchedVertex, facet, position_mm });
+                }
+            }
+        }
+        faults
+    }
+
+    /// The shells, and those that face inwards without being cavities.
+    fn shells(
+        &self,
+        sets: &mut Sets,
+        fans: &mut Sets,
+        edges: &[(usize, bool)],
+    ) -> (Vec<Shell>, Vec<StlFault>) {
+        let mut number = vec![usize::MAX; self.facets.len()];
+        let mut tallies: Vec<Tally> = Vec::new();
+        // Volumes are taken from a point of the solid, as far-off coordinates would cancel badly.
+        let origin = self.at.first().copied().unwrap_or_default();
+        for facet in 0..self.facets.len() {
+            let root = sets.find(facet);
+            if number[root] == usize::MAX {
+                number[root] = tallies.len();
+                tallies.push(Tally::new(facet));
+            }
+            let tally = &mut tallies[number[root]];
+            let [a, b, c] = self.points(facet).map(|p| p - origin);
+            tally.facets += 1;
+            tally.volume += a.dot(b.cross(c)) / 6.0;
+            for p in [a, b, c] {
+                (tally.low, tally.high) = (tally.low.min(p), tally.high.max(p));
+            }
+            tally.vertices += (0..3).filter(|i| fans.find(3 * facet + i) == 3 * facet + i).count() as i64;
+        }
+        for &(facet, sound) in edges {
+            let tally = &mut tallies[number[sets.find(facet)]];
+            tally.edges += 1;
+            tally.closed &= sound;
+        }
+        let mut faults = Vec::new();
+        for tally in tallies.iter().filter(|t| t.volume < 0.0) {
+            let around =
+                |t: &&Tally| t.volume > 0.0 && t.low.cmplt(tally.low).all() && t.high.cmpgt(tally.high).all();
+            if tallies.iter().find(around).is_none() {
+                let position_mm = self.points(tally.first)[0].to_array();
+                faults.push(StlFault { kind: StlFaultKind::InsideOut, facet: tally.first, position_mm });
+            }
+        }
+        (tallies.iter().map(Tally::shell).collect(), faults)
+    }
+}
+
+/// What is counted of one shell.
+struct Tally {
+    first: usize,
+    facets: usize,
+    vertices: i64,
+    edges: i64,
+    closed: bool,
+    volume: f64,
+    low: DVec3,
+    high: DVec3,
+}
+
+impl Tally {
+    fn new(first: usize) -> Self {
+        let (low, high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        Self { first, facets: 0, vertices: 0, edges: 0, closed: true, volume: 0.0, low, high }
+    }
+
+    fn shell(&self) -> Shell {
+        let euler = self.vertices - self.edges + self.facets as i64;
+        let genus = self.closed.then_some(1 - euler / 2);
+        Shell { triangles: self.facets, genus, volume_mm3: self.volume }
+    }
+}
+
+/// Disjoint sets; each is known by its least member, so that nothing depends on the order of joins.
+struct Sets {
+    parent: Vec<usize>,
+}
+
+impl Sets {
+    fn new(n: usize) -> Self {
+        Self { parent: (0..n).collect() }
+    }
+
+    fn find(&mut self, mut i: usize) -> usize {
+        while self.parent[i] != i {
+            self.parent[i] = self.parent[self.parent[i]];
+            i = self.parent[i];
+        }
+        i
+    }
+
+    fn join(&mut self, i: usize, j: usize) {
+        let (i, j) = (self.find(i), self.find(j));
+        self.parent[i.max(j)] = i.min(j);
+    }
+}

@@ -1,0 +1,278 @@
+//! Counts what the paths of an SVG fill.
+
+use std::fmt;
+
+use glam::DVec2;
+use roxmltree::{Document, ParsingOptions};
+use rustc_hash::FxHashSet;
+use serde::Serialize;
+
+use super::drawing::{Drawing, Shape};
+use super::error::VerifyError;
+use super::narrowest::{Narrowest, widths};
+use super::{drawn, plain};
+use crate::planar::{Contour, Grid, Region, RegionError};
+
+/// The largest file that is read; larger ones are not ornaments but attacks on memory.
+const MAX_BYTES: usize = 256 << 20;
+/// The most elements that are read, for the same reason.
+const MAX_NODES: u32 = 4_000_000;
+/// Overlaps smaller than this part of the ink are rounding.
+const OVERLAP_PART: f64 = 1e-9;
+
+/// What an SVG holds. Lengths are millimetres from the page's lower left corner, y up.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SvgReport {
+    /// The number of connected components of the ink.
+    pub components: usize,
+    /// The number of holes in them.
+    pub holes: usize,
+    /// The area of the ink.
+    pub area_mm2: f64,
+    /// The lower left and upper right corner of the ink; `None` when there is none.
+    #[serde(serialize_with = "super::json::corners")]
+    pub bounds_mm: Option<(DVec2, DVec2)>,
+    /// Width and height of the page.
+    #[serde(serialize_with = "super::json::point")]
+    pub page_mm: DVec2,
+    /// The number of vertices after curves were made polygons.
+    pub vertices: usize,
+    /// The narrowest ink; `None` when there is no ink.
+    pub min_feature: Option<Narrowest>,
+    /// The narrowest gap; `None` when no gap would ever close.
+    pub min_gap: Option<Narrowest>,
+    /// What is not in order in the file, though it can be counted.
+    pub faults: Vec<SvgFault>,
+    /// The greatest distance between the file's curves and the polygons that were counted.
+    pub chord_mm: f64,
+    /// The ink.
+    #[serde(skip)]
+    pub region: Region,
+}
+
+/// Something in an SVG that a cutter or a slicer may stumble over. It does not change the counts.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum SvgFault {
+    /// Contours cross or touch themselves or each other.
+    Crossing {
+        /// Where.
+        #[serde(serialize_with = "super::json::point")]
+        position_mm: DVec2,
+    },
+    /// A contour covers ink twice, or is a hole outside of any ink.
+    Nesting {
+        /// A point of the contour.
+        #[serde(serialize_with = "super::json::point")]
+        position_mm: DVec2,
+    },
+    /// Several elements paint the same area.
+    Overlap {
+        /// The area painted more than once.
+        area_mm2: f64,
+    },
+    /// A subpath that is filled but not closed.
+    Open {
+        /// The element.
+        element: String,
+        /// Where the subpath begins.
+        #[serde(serialize_with = "super::json::point")]
+        position_mm: DVec2,
+    },
+    /// A subpath without area.
+    Degenerate {
+        /// The element.
+        element: String,
+        /// Where the subpath begins.
+        #[serde(serialize_with = "super::json::point")]
+        position_mm: DVec2,
+    },
+    /// Ink beyond the page.
+    OutsidePage {
+        /// A corner of the ink's bounding box that is beyond it.
+        #[serde(serialize_with = "super::json::point")]
+        position_mm: DVec2,
+    },
+}
+
+impl fmt::Display for SvgFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (what, p) = match self {
+            Self::Crossing { position_mm } => ("contours cross or touch", position_mm),
+            Self::Nesting { position_mm } => {
+                ("a contour covers ink twice or is a hole in nothing", position_mm)
+            }
+            Self::Overlap { area_mm2 } => {
+                return write!(f, "elements overlap: {area_mm2:.4} mm2 are painted twice");
+            }
+            Self::Open { element, position_mm } => {
+                write!(f, "{element}: ")?;
+                ("a filled subpath is not closed", position_mm)
+            }
+            Self::Degenerate { element, position_mm } => {
+                write!(f, "{element}: ")?;
+                ("a subpath has no area", position_mm)
+            }
+            Self::OutsidePage { position_mm } => ("ink reaches beyond the page", position_mm),
+        };
+        write!(f, "{what} at ({:.4}, {:.4}) mm", p.x, p.y)
+    }
+}
+
+/// Reads an SVG and counts what its paths fill, with curves as polygons within `chord_mm`.
+///
+/// Every path is filled under its own rule, strokes are ink, and all is united; colours are not told apart,
+/// white is ink too.
+///
+/// # Errors
+/// [`VerifyError`] when the bytes are no SVG, or when something in it cannot be judged.
+pub fn read_svg(bytes: &[u8], chord_mm: f64) -> Result<SvgReport, VerifyError> {
+    if bytes.len() > MAX_BYTES {
+        return Err(VerifyError::TooLarge { bytes: bytes.len(), limit: MAX_BYTES });
+    }
+    let text = std::str::from_utf8(bytes).map_err(|e| VerifyError::NotText { offset: e.valid_up_to() })?;
+    let options = ParsingOptions { allow_dtd: true, nodes_limit: MAX_NODES, ..ParsingOptions::default() };
+    let document = Document::parse_with_options(text, options)
+        .map_err(|e| VerifyError::Xml { message: e.to_string() })?;
+    let root = document.root_element().tag_name().name();
+    if root != "svg" {
+        return Err(VerifyError::NotSvg { found: root.to_owned() });
+    }
+    let drawing = match plain::read(&document)? {
+        Some(drawing) => drawing,
+        None => drawn::read(&document, chord_mm)?,
+    };
+    count(&drawing, chord_mm)
+}
+
+fn count(drawing: &Drawing, chord_mm: f64) -> Result<SvgReport, VerifyError> {
+    let mut faults = Vec::new();
+    let loops: Vec<_> = drawing.shapes.iter().map(|shape| shape.loops(chord_mm)).collect();
+    let grid = grid(
+        drawing,
+        loops.iter().zip(&drawing.shapes).flat_map(|(loops, shape)| {
+            loops.iter().flat_map(move |l| l.points.iter().map(move |&p| (p, shape)))
+        }),
+    )?;
+    let mut filled = Vec::with_capacity(loops.len());
+    let mut contours = Vec::new();
+    for (shape, loops) in drawing.shapes.iter().zip(&loops) {
+        let mut paths = Vec::with_capacity(loops.len());
+        for l in loops {
+            let path = shape.snap(grid, &l.points)?;
+            if !shape.is_stroke {
+                let (element, position_mm) = (shape.element.clone(), l.points[0]);
+                match Contour::new(path.clone()) {
+                    None => faults.push(SvgFault::Degenerate { element, position_mm }),
+                    Some(_) if !l.closed => faults.push(SvgFault::Open { element, position_mm }),
+                    Some(contour) => contours.push(contour),
+                }
+            }
+            paths.push(path);
+        }
+        filled.push(Region::fill(grid, &paths, shape.rule));
+    }
+    let painted_mm2: f64 = filled.iter().map(Region::area_mm2).sum();
+    let region = match filled.len() {
+        1 => filled.remove(0),
+        _ => Region::union(grid, &filled),
+    };
+    let area_mm2 = region.area_mm2();
+    if painted_mm2 - area_mm2 > OVERLAP_PART * painted_mm2 {
+        faults.push(SvgFault::Overlap { area_mm2: painted_mm2 - area_mm2 });
+    }
+    faults.extend(contour_faults(&region, contours));
+    faults.extend(beyond_page(&region, drawing.page_mm, chord_mm));
+    let widths = widths(&region, chord_mm);
+    Ok(SvgReport {
+        components: region.components(),
+        holes: region.holes(),
+        area_mm2,
+        bounds_mm: region.bounds_mm(),
+        page_mm: drawing.page_mm,
+        vertices: region.vertices(),
+        min_feature: widths.feature,
+        min_gap: widths.gap,
+        faults,
+        chord_mm,
+        region,
+    })
+}
+
+/// The grid for the page and everything drawn.
+fn grid<'a>(
+    drawing: &Drawing,
+    points: impl Iterator<Item = (DVec2, &'a Shape)>,
+) -> Result<Grid, VerifyError> {
+    let mut extent_mm = drawing.page_mm.max_element().clamp(Grid::MIN_EXTENT_MM, Grid::MAX_EXTENT_MM);
+    let probe = Grid::for_extent(extent_mm).expect("clamped to the range");
+    for (p, shape) in points {
+        probe.snap(p).map_err(|source| shape.misplaced(source))?;
+        extent_mm = extent_mm.max(p.abs().max_element());
+    }
+    Ok(Grid::for_extent(extent_mm).expect("every coordinate was in range"))
+}
+
+/// Where the file's own contours are not those of the region that they fill.
+fn contour_faults(region: &Region, contours: Vec<Contour>) -> Vec<SvgFault> {
+    let found: FxHashSet<&Contour> = region.contours().collect();
+    let given: Vec<Contour> = contours.into_iter().map(|c| oriented(c, &found)).collect();
+    if given.len() == found.len() && given.iter().all(|c| found.contains(c)) {
+        return Vec::new();
+    }
+    match Region::from_contours(region.grid(), given) {
+        Ok(_) => Vec::new(),
+        Err(RegionError::Invalid { faults }) => faults.into_iter().map(SvgFault::from).collect(),
+        Err(RegionError::Grid(e)) => unreachable!("the contours are on the grid: {e}"),
+    }
+}
+
+impl From<crate::planar::Fault> for SvgFault {
+    fn from(fault: crate::planar::Fault) -> Self {
+        match fault {
+            crate::planar::Fault::Crossing(position_mm) => Self::Crossing { position_mm },
+            crate::planar::Fault::Nesting(position_mm) => Self::Nesting { position_mm },
+        }
+    }
+}
+
+/// A contour the way round in which it bounds the ink, if it does: a file may wind as it likes.
+fn oriented(contour: Contour, found: &FxHashSet<&Contour>) -> Contour {
+    if found.contains(&contour) {
+        return contour;
+    }
+    let reversed = Contour::new(contour.points().iter().rev().copied().collect());
+    reversed.filter(|r| found.contains(r)).unwrap_or(contour)
+}
+
+fn beyond_page(region: &Region, page_mm: DVec2, slack_mm: f64) -> Option<SvgFault> {
+    let (low, high) = region.bounds_mm()?;
+    let position_mm = if low.min_element() < -slack_mm {
+        low
+    } else if (high - page_mm).max_element() > slack_mm {
+        high
+    } else {
+        return None;
+    };
+    Some(SvgFault::OutsidePage { position_mm })
+}
+
+impl fmt::Display for SvgReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "components   {}", self.components)?;
+        writeln!(f, "holes        {}", self.holes)?;
+        writeln!(f, "area         {:.3} mm2", self.area_mm2)?;
+        writeln!(f, "page         {:.3} x {:.3} mm", self.page_mm.x, self.page_mm.y)?;
+        for (name, narrowest) in [("min feature", &self.min_feature), ("min gap", &self.min_gap)] {
+            match narrowest {
+                Some(n) => {
+                    let (w, p) = (n.width_mm, n.position_mm);
+                    writeln!(f, "{name:<12} {w:.3} mm at ({:.3}, {:.3}) mm", p.x, p.y)?;
+                }
+                None => writeln!(f, "{name:<12} none")?,
+            }
+        }
+        write!(f, "faults       {}", self.faults.len())?;
+        self.faults.iter().take(super::shells::FAULTS_SHOWN).try_for_each(|fault| write!(f, "\n  {fault}"))
+    }
+}
