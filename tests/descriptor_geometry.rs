@@ -189,8 +189,6 @@ fn around_circle(contour: &OutlineContour, length_mm: f64) -> Vec<DVec2> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 256, ..ProptestConfig::default() })]
-
     // Leaving out one cut leaves one piece where there were two, and its descriptor is that of their join.
     #[test]
     fn a_join_is_the_piece_without_the_cut(sketch in exemplars(), rule in rules()) {

@@ -25,7 +25,6 @@ pub(super) fn solve_ring(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -
     portals.dedup();
     // What is broken somewhere does not go all the way round.
     portals.retain(|&m| m > 0 || !automaton.goal().closed_pattern);
-    let mut best: Option<Solution> = None;
     let mut best: Option<(Cost, Solution)> = None;
     let (mut labels, mut floor) = (0, NEVER);
     for m in portals {
