@@ -285,8 +285,6 @@ fn drawn_pieces() -> impl Strategy<Value = Pieces> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
-
     #[test]
     fn free_pieces_are_sequenced_as_well_as_by_enumeration(pieces in free_pieces(), request in request()) {
         let is_small = check(&pieces, &request)?;
