@@ -20,7 +20,7 @@ use crate::planar::Region;
 /// How far a peak is looked for from a triangle's circumcentre, and how far away edges are looked for that
 /// could limit it, as parts of its circumradius. Where the distance has a peak, both are generous.
 const PEAK_REACH: f64 = 0.5;
-const PEAK_SIGHT: f64 = 1.25;
+const PEAK_SIGHT: f64 = 1.6;
 /// Centres nearer to the boundary than this part of the circumradius are not told from points beyond it.
 const ON_BORDER: f64 = 1e-6;
 /// Halvings in the search for the middle between two stretches of the boundary.
@@ -55,8 +55,9 @@ impl Clearance {
         let (low, high) = region.bounds_mm()?;
         let mesh = mesh(region, low, high);
         let ink = ink_faces(&mesh);
-        let mut survey = Survey { walls: Walls::new(&mesh), in_sight: Vec::new() };
         let faces = mesh.num_inner_faces();
+        let mut survey =
+            Survey { walls: Walls::new(&mesh), seats: Vec::with_capacity(faces), in_sight: Vec::new() };
         let mut places: Vec<(Spot, bool)> =
             (0..faces).map(|face| (survey.peak(face), ink[face + 1])).collect();
         let mut ways = Vec::with_capacity(mesh.num_undirected_edges());
@@ -133,6 +134,8 @@ fn ink_faces(mesh: &Mesh) -> Vec<bool> {
 /// The measuring of places and ways.
 struct Survey {
     walls: Walls,
+    /// Where each triangle sits on the ridges: its circumcentre, if that is on its side of the boundary.
+    seats: Vec<DVec2>,
     /// The edges in sight, kept to spare allocations.
     in_sight: Vec<Edge>,
 }
@@ -144,6 +147,7 @@ impl Survey {
         let middle = (a + b + c) / 3.0;
         let Some(centre) = circumcentre(a, b, c) else {
             self.look(&[face], middle, middle.distance(a));
+            self.seats.push(middle);
             return spot(middle, &self.in_sight);
         };
         let radius = centre.distance(a);
@@ -152,17 +156,20 @@ impl Survey {
         let hidden = spot(centre, &self.in_sight).radius < ON_BORDER * radius
             || self.in_sight.iter().any(|&e| crosses(e, (middle, centre)));
         let start = if hidden { middle } else { centre };
+        self.seats.push(start);
         ascend(start, &self.in_sight, (centre, (PEAK_REACH * radius).max(centre.distance(start))))
     }
 
     /// The pass between the boundary around two vertices: a segment that is the shortest between the two,
-    /// locally, and whose diametral circle is clear of the boundary.
+    /// locally, and whose diametral circle is clear of the boundary. It is on the way between the two
+    /// triangles when they sit on different sides of it; other ways nearby lead past it.
     fn pass(&mut self, [p, q]: [usize; 2], faces: [usize; 2]) -> Option<Spot> {
         let (a, b) = (self.walls.at(p), self.walls.at(q));
         let mut best: Option<Spot> = None;
         let mut offer = |survey: &mut Self, x: DVec2, y: DVec2| {
             let found = Spot { radius: x.distance(y) * 0.5, at: (x + y) * 0.5 };
-            if best.is_some_and(|b| b.radius <= found.radius) {
+            let side = |face: usize| (y - x).perp_dot(survey.seats[face] - x) >= 0.0;
+            if best.is_some_and(|b| b.radius <= found.radius) || side(faces[0]) == side(faces[1]) {
                 return;
             }
             survey.look(&faces, found.at, found.radius);

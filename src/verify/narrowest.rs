@@ -346,31 +346,3 @@ mod tests {
         }
     }
 }
-#[cfg(test)]
-mod debug {
-    use super::*;
-    use crate::planar::{FillRule, Grid, GridPoint};
-    #[test]
-    fn dbg() {
-        let g = Grid::for_extent(128.0).unwrap();
-        let v = [
-            vec![(0., 0.), (5., 0.), (5., 5.), (0., 5.)],
-            vec![(5.25, 1.), (12.25, 1.), (12.25, 3.), (5.25, 3.)],
-        ];
-        let p: Vec<Vec<GridPoint>> =
-            v.iter().map(|c| c.iter().map(|&q| g.snap(q.into()).unwrap()).collect()).collect();
-        let r = Region::fill(g, &p, FillRule::EvenOdd);
-        let c = Clearance::new(&r).unwrap();
-        for (s, ink) in &c.places {
-            if *ink {
-                eprintln!("{s:?}");
-            }
-        }
-        let mut ch = changes(&c, true, 0.01);
-        ch.sort_by(|a, b| a.spot.radius.total_cmp(&b.spot.radius));
-        let climber = Climber::new(&r);
-        for c in ch.iter().take(6) {
-            eprintln!("{:?} {:?} {} climbed {:?}", c.spot, c.unless_higher, c.is_peak, climber.climb(c.spot));
-        }
-    }
-}
