@@ -78,22 +78,31 @@ impl Contact {
     }
 }
 
-/// The direction in which all contacts nearer than `limit` move away, the slowest as fast as possible. It is
-/// straight away from one of them, or makes equal angles with two.
+/// The direction in which all contacts nearer than `limit` move away, the slowest as fast as possible: the
+/// middle of the arc that their normals span, unless they come from all around.
 fn steepest(contacts: &[Contact], limit: f64) -> Option<DVec2> {
-    let near = contacts.iter().filter(|c| c.distance <= limit);
-    let slowest = |u: DVec2| near.clone().map(|c| c.normal.dot(u)).fold(f64::INFINITY, f64::min);
-    let mut best = (STRICT, None);
-    for (i, a) in near.clone().enumerate() {
-        for b in near.clone().skip(i) {
-            let Some(u) = (a.normal + b.normal).try_normalize() else { continue };
-            let speed = slowest(u);
-            if speed > best.0 {
-                best = (speed, Some(u));
-            }
+    let nearest = contacts.iter().min_by(|a, b| a.distance.total_cmp(&b.distance))?.normal;
+    let (mut right, mut left) = ((0.0, nearest), (0.0, nearest));
+    for contact in contacts.iter().filter(|c| c.distance <= limit) {
+        let turn = turn(nearest, contact.normal);
+        if turn < right.0 {
+            right = (turn, contact.normal);
+        }
+        if turn > left.0 {
+            left = (turn, contact.normal);
         }
     }
-    best.1
+    // Measured from one of them, normals within half a turn span an arc of less than half a turn.
+    let spans_less_than_half = right.1.perp_dot(left.1) > 0.0 || left.0 - right.0 < 1.0;
+    let u = (right.1 + left.1).try_normalize()?;
+    (spans_less_than_half && u.dot(left.1) > STRICT).then_some(u)
+}
+
+/// How far one turns counter-clockwise from `a` to `b`: increasing with the angle, from −2 to 2 for half a turn.
+fn turn(a: DVec2, b: DVec2) -> f64 {
+    let (along, across) = (a.dot(b), a.perp_dot(b));
+    let quarter = across / (along.abs() + across.abs());
+    if along >= 0.0 { quarter } else { 2f64.copysign(across) - quarter }
 }
 
 /// How far it is from `p` along the unit vector `u` out of the circle of `radius` around the origin.

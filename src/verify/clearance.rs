@@ -21,6 +21,9 @@ use crate::planar::Region;
 /// could limit it, as parts of its circumradius. Where the distance has a peak, both are generous.
 const PEAK_REACH: f64 = 0.5;
 const PEAK_SIGHT: f64 = 1.6;
+/// A centre with this part of the circumradius around it is taken for the peak; peaks that decide something
+/// are climbed again anyway.
+const GOOD_ENOUGH: f64 = 0.97;
 /// Centres nearer to the boundary than this part of the circumradius are not told from points beyond it.
 const ON_BORDER: f64 = 1e-6;
 /// Halvings in the search for the middle between two stretches of the boundary.
@@ -151,12 +154,18 @@ impl Survey {
             return spot(middle, &self.in_sight);
         };
         let radius = centre.distance(a);
-        self.look(&[face], centre, PEAK_SIGHT * radius);
+        self.look(&[face], centre, radius);
         // The centre of a right-angled triangle is on the boundary, and at a sharp tip it may be beyond.
-        let hidden = spot(centre, &self.in_sight).radius < ON_BORDER * radius
+        let at_centre = spot(centre, &self.in_sight);
+        let hidden = at_centre.radius < ON_BORDER * radius
             || self.in_sight.iter().any(|&e| crosses(e, (middle, centre)));
         let start = if hidden { middle } else { centre };
         self.seats.push(start);
+        // No corner is farther from a better place than from the centre: little is to be gained here.
+        if !hidden && at_centre.radius > GOOD_ENOUGH * radius {
+            return at_centre;
+        }
+        self.look(&[face], centre, PEAK_SIGHT * radius);
         ascend(start, &self.in_sight, (centre, (PEAK_REACH * radius).max(centre.distance(start))))
     }
 
