@@ -7,6 +7,8 @@
 
 use glam::DVec2;
 
+use crate::planar::Region;
+
 /// A place and its distance to the boundary, in millimetres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Spot {
@@ -23,7 +25,10 @@ const ROUNDS: usize = 48;
 /// More, and edges that do not matter bar the way; less, and a climb zigzags along ridges.
 const GENEROUS: f64 = 0.1;
 /// The strictest such part, and the least gain of a step; a climb ends there.
-const STRICT: f64 = 1e-10;
+const STRICT: f64 = 1e-7;
+
+/// Legs of a climb to a peak, each at most as long as the radius there.
+const CLIMBS: usize = 32;
 
 /// The point of `edge` that is nearest to `p`.
 pub(super) fn nearest((a, b): Edge, p: DVec2) -> DVec2 {
@@ -57,10 +62,46 @@ pub(super) fn ascend(start: DVec2, edges: &[Edge], (centre, reach): (DVec2, f64)
         });
         match next {
             Some(next) if next.radius > best.radius * (1.0 + STRICT) => best = next,
-            _ => generosity *= 0.1,
+            _ => generosity *= 0.04,
         }
     }
     best
+}
+
+/// All edges of a region, for the few peaks that decide something.
+pub(super) struct Climber {
+    edges: Vec<Edge>,
+}
+
+impl Climber {
+    pub(super) fn new(region: &Region) -> Self {
+        let grid = region.grid();
+        let edges = region.contours().flat_map(|c| c.edges().map(|(a, b)| (grid.to_mm(a), grid.to_mm(b))));
+        Self { edges: edges.collect() }
+    }
+
+    /// `at` with its true distance to the boundary.
+    pub(super) fn look(&self, at: DVec2) -> Spot {
+        spot(at, &self.edges)
+    }
+
+    /// The peak above `start`, with its true distance to the boundary.
+    pub(super) fn climb(&self, start: Spot) -> Spot {
+        let mut best = self.look(start.at);
+        // A climb sees the edges that can stop it, and no farther; then it looks around again.
+        for _ in 0..CLIMBS {
+            let reach = best.radius;
+            let in_sight = |&edge: &Edge| nearest(edge, best.at).distance(best.at) <= 3.0 * reach;
+            let near: Vec<Edge> = self.edges.iter().copied().filter(in_sight).collect();
+            let next = ascend(best.at, &near, (best.at, reach));
+            let arrived = next.at.distance(best.at) < 0.5 * reach;
+            best = next;
+            if arrived {
+                break;
+            }
+        }
+        best
+    }
 }
 
 /// The linearised distance to one edge.

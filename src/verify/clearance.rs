@@ -13,17 +13,10 @@
 use glam::DVec2;
 use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation};
 
-use super::ascent::{Edge, Spot, ascend, spot};
+use super::ascent::{Edge, Spot, spot};
 use super::walls::Walls;
 use crate::planar::Region;
 
-/// How far a peak is looked for from a triangle's circumcentre, and how far away edges are looked for that
-/// could limit it, as parts of its circumradius. Where the distance has a peak, both are generous.
-const PEAK_REACH: f64 = 0.5;
-const PEAK_SIGHT: f64 = 1.6;
-/// A centre with this part of the circumradius around it is taken for the peak; peaks that decide something
-/// are climbed again anyway.
-const GOOD_ENOUGH: f64 = 0.97;
 /// Centres nearer to the boundary than this part of the circumradius are not told from points beyond it.
 const ON_BORDER: f64 = 1e-6;
 /// Halvings in the search for the middle between two stretches of the boundary.
@@ -44,7 +37,7 @@ pub(super) struct Way {
 
 /// The distance to the boundary on both of its sides.
 pub(super) struct Clearance {
-    /// One place for each triangle, and whether it is ink.
+    /// One place for each triangle, and whether it is ink. A peak is at least as high as its place.
     pub(super) places: Vec<(Spot, bool)>,
     /// The ways between them; none leads from ink to gap.
     pub(super) ways: Vec<Way>,
@@ -62,7 +55,7 @@ impl Clearance {
         let mut survey =
             Survey { walls: Walls::new(&mesh), seats: Vec::with_capacity(faces), in_sight: Vec::new() };
         let mut places: Vec<(Spot, bool)> =
-            (0..faces).map(|face| (survey.peak(face), ink[face + 1])).collect();
+            (0..faces).map(|face| (survey.place(face), ink[face + 1])).collect();
         let mut ways = Vec::with_capacity(mesh.num_undirected_edges());
         for edge in mesh.undirected_edges().filter(|e| !e.is_constraint_edge()) {
             let (a, b) = (edge.as_directed(), edge.as_directed().rev());
@@ -144,29 +137,20 @@ struct Survey {
 }
 
 impl Survey {
-    /// The peak of the distance near a triangle's circumcentre, or the best place there is on the way.
-    fn peak(&mut self, face: usize) -> Spot {
+    /// The place that a triangle stands for: its circumcentre, which is near a peak if there is one.
+    fn place(&mut self, face: usize) -> Spot {
         let [a, b, c] = self.walls.corners(face).map(|v| self.walls.at(v));
         let middle = (a + b + c) / 3.0;
-        let Some(centre) = circumcentre(a, b, c) else {
-            self.look(&[face], middle, middle.distance(a));
-            self.seats.push(middle);
-            return spot(middle, &self.in_sight);
-        };
+        let centre = circumcentre(a, b, c).unwrap_or(middle);
         let radius = centre.distance(a);
         self.look(&[face], centre, radius);
+        let found = spot(centre, &self.in_sight);
         // The centre of a right-angled triangle is on the boundary, and at a sharp tip it may be beyond.
-        let at_centre = spot(centre, &self.in_sight);
-        let hidden = at_centre.radius < ON_BORDER * radius
-            || self.in_sight.iter().any(|&e| crosses(e, (middle, centre)));
-        let start = if hidden { middle } else { centre };
-        self.seats.push(start);
-        // No corner is farther from a better place than from the centre: little is to be gained here.
-        if !hidden && at_centre.radius > GOOD_ENOUGH * radius {
-            return at_centre;
-        }
-        self.look(&[face], centre, PEAK_SIGHT * radius);
-        ascend(start, &self.in_sight, (centre, (PEAK_REACH * radius).max(centre.distance(start))))
+        let hidden =
+            found.radius < ON_BORDER * radius || self.in_sight.iter().any(|&e| crosses(e, (middle, centre)));
+        let found = if hidden { spot(middle, &self.in_sight) } else { found };
+        self.seats.push(found.at);
+        found
     }
 
     /// The pass between the boundary around two vertices: a segment that is the shortest between the two,

@@ -10,13 +10,9 @@
 use glam::DVec2;
 use serde::Serialize;
 
-use super::ascent::{self, Edge, Spot, ascend, nearest};
+use super::ascent::{Climber, Spot};
 use super::clearance::{Clearance, Way};
 use crate::planar::Region;
-
-/// By how much a peak may be higher than the triangulation tells. Smaller, and a neck with little behind it is
-/// overlooked; larger, and more ripples are climbed for nothing.
-const PEAK_DOUBT: f64 = 1.25;
 
 /// Relative slack in a comparison of distances, against rounding only.
 const ROUNDING: f64 = 1e-9;
@@ -74,10 +70,18 @@ pub fn widths(region: &Region, chord_mm: f64) -> Widths {
 /// A place where the counts may change.
 struct Change {
     spot: Spot,
-    /// A pass that does not count unless this peak behind it is higher than the triangulation tells.
-    unless_higher: Option<Spot>,
-    /// Whether a component vanishes here, so that the peak itself should be sharpened.
-    is_peak: bool,
+    /// What has to be looked at before it is believed.
+    doubt: Doubt,
+}
+
+/// The places of a triangulation are not quite as high as the peaks, and its passes may be ripples.
+enum Doubt {
+    /// None: a loop opens here, or both sides of the pass are high enough.
+    None,
+    /// A component vanishes here, at the peak above this place.
+    Peak,
+    /// A pass, unless the peaks above these places are both high enough.
+    Pass([Spot; 2]),
 }
 
 /// The narrowest change that holds when the peaks in question are climbed on the boundary itself.
@@ -85,16 +89,20 @@ fn first_change(clearance: &Clearance, climber: &Climber, ink: bool, chord_mm: f
     let mut changes = changes(clearance, ink, chord_mm);
     changes.sort_by(|a, b| a.spot.radius.total_cmp(&b.spot.radius));
     let mut best: Option<Spot> = None;
-    for change in changes {
-        if best.is_some_and(|b| b.radius <= change.spot.radius) {
+    for Change { spot, doubt } in changes {
+        if best.is_some_and(|b| b.radius <= spot.radius) {
             break;
         }
-        let spot = match change.unless_higher {
-            _ if change.is_peak => climber.climb(change.spot),
+        let high = |peak: &Spot| {
+            let needed = spot.radius + chord_mm;
+            peak.radius > needed || climber.climb(*peak).radius > needed
+        };
+        let spot = match doubt {
+            Doubt::Peak => climber.climb(spot),
+            Doubt::Pass(peaks) if !peaks.iter().all(high) => continue,
             // An edge that the triangulation did not look at is in the way: this is no pass.
-            _ if climber.look(change.spot.at).radius < change.spot.radius * (1.0 - ROUNDING) => continue,
-            Some(peak) if climber.climb(peak).radius - change.spot.radius <= chord_mm => continue,
-            _ => change.spot,
+            _ if climber.look(spot.at).radius < spot.radius * (1.0 - ROUNDING) => continue,
+            _ => spot,
         };
         best = best.filter(|b| b.radius <= spot.radius).or(Some(spot));
     }
@@ -108,62 +116,25 @@ fn changes(clearance: &Clearance, ink: bool, chord_mm: f64) -> Vec<Change> {
     let on_side = |way: &&Way| clearance.places[way.ends[0]].1 == ink;
     for way in clearance.ways.iter().filter(on_side) {
         let [a, b] = way.ends.map(|end| peaks.find(end));
-        let lower = if a == b { None } else { Some(peaks.join(a, b)) };
         let spot = way.narrowest;
-        let unless_higher = lower.filter(|peak| peak.radius - spot.radius <= chord_mm);
-        let matters = match (lower, unless_higher) {
+        if a == b {
             // Closing a loop opens a hole, or parts two components of the other side.
-            (None, _) => true,
-            (Some(_), None) => way.is_pass,
-            (Some(_), Some(peak)) => way.is_pass && peak.radius * PEAK_DOUBT - spot.radius > chord_mm,
-        };
-        if matters {
-            changes.push(Change { spot, unless_higher, is_peak: false });
+            changes.push(Change { spot, doubt: Doubt::None });
+            continue;
+        }
+        let sides = [a, b].map(|side| peaks.highest[side]);
+        peaks.join(a, b);
+        if way.is_pass {
+            let certain = sides.iter().all(|peak| peak.radius - spot.radius > chord_mm);
+            changes.push(Change { spot, doubt: if certain { Doubt::None } else { Doubt::Pass(sides) } });
         }
     }
     for place in 0..clearance.places.len() {
         if clearance.places[place].1 == ink && peaks.find(place) == place {
-            changes.push(Change { spot: peaks.highest[place], unless_higher: None, is_peak: true });
+            changes.push(Change { spot: peaks.highest[place], doubt: Doubt::Peak });
         }
     }
     changes
-}
-
-/// All edges of a region, for the few peaks that decide something: those of a triangulation look at the
-/// edges around one triangle only.
-struct Climber {
-    edges: Vec<Edge>,
-}
-
-impl Climber {
-    fn new(region: &Region) -> Self {
-        let grid = region.grid();
-        let edges = region.contours().flat_map(|c| c.edges().map(|(a, b)| (grid.to_mm(a), grid.to_mm(b))));
-        Self { edges: edges.collect() }
-    }
-
-    /// `at` with its true distance to the boundary.
-    fn look(&self, at: DVec2) -> Spot {
-        ascent::spot(at, &self.edges)
-    }
-
-    /// The peak above `start`, with its true distance to the boundary.
-    fn climb(&self, start: Spot) -> Spot {
-        let mut best = start;
-        // A climb sees the edges that can stop it, and no farther; then it looks around again.
-        for _ in 0..CLIMBS {
-            let reach = best.radius;
-            let in_sight = |&edge: &Edge| nearest(edge, best.at).distance(best.at) <= 3.0 * reach;
-            let near: Vec<Edge> = self.edges.iter().copied().filter(in_sight).collect();
-            let next = ascend(best.at, &near, (best.at, reach));
-            let arrived = next.at.distance(best.at) < 0.5 * reach;
-            best = next;
-            if arrived {
-                break;
-            }
-        }
-        best
-    }
 }
 
 /// Sets of places, each with its highest peak.
@@ -188,11 +159,10 @@ impl Peaks {
         place
     }
 
-    /// Joins two roots under the one with the higher peak; the lower peak.
-    fn join(&mut self, a: usize, b: usize) -> Spot {
+    /// Joins two roots under the one with the higher peak.
+    fn join(&mut self, a: usize, b: usize) {
         let (over, under) = if self.highest[a].radius >= self.highest[b].radius { (a, b) } else { (b, a) };
         self.parent[under] = over;
-        self.highest[under]
     }
 }
 

@@ -8,7 +8,7 @@ use super::clearance::Mesh;
 
 /// The most triangles that one look passes through. A circle that holds no vertex is crossed by a few; more
 /// come together only where the answer is wide open anyway.
-const MOST_FACES: usize = 256;
+const MOST_FACES: usize = 64;
 const NONE: usize = usize::MAX;
 
 /// One side of a triangle.
