@@ -31,8 +31,8 @@ pub(super) struct Way {
     pub(super) ends: [usize; 2],
     /// The narrowest spot along the way.
     pub(super) narrowest: Spot,
-    /// Whether that is a pass, and not just the lower end.
-    pub(super) is_pass: bool,
+    /// If that is a pass, and not just the lower end, the unit vector that leads from it towards the first end.
+    pub(super) ahead: Option<DVec2>,
 }
 
 /// The distance to the boundary on both of its sides.
@@ -64,15 +64,15 @@ impl Clearance {
             let vertices = [a.from().index(), a.to().index()];
             let pass = survey.pass(vertices, ends);
             // Where the way crosses the edge there is at least so much room, whatever the triangles say.
-            let narrowest = pass.unwrap_or_else(|| survey.crossing(vertices, ends));
+            let narrowest = pass.map_or_else(|| survey.crossing(vertices, ends), |(spot, _)| spot);
             for end in ends {
                 if narrowest.radius > places[end].0.radius {
                     places[end].0 = narrowest;
                 }
             }
-            ways.push(Way { ends, narrowest, is_pass: pass.is_some() });
+            ways.push(Way { ends, narrowest, ahead: pass.map(|(_, ahead)| ahead) });
         }
-        for way in ways.iter_mut().filter(|way| !way.is_pass) {
+        for way in ways.iter_mut().filter(|way| way.ahead.is_none()) {
             // Without a pass in between, the distance falls evenly to the lower end.
             let [a, b] = way.ends.map(|end| places[end].0);
             way.narrowest = if a.radius < b.radius { a } else { b };
@@ -155,19 +155,22 @@ impl Survey {
 
     /// The pass between the boundary around two vertices: a segment that is the shortest between the two,
     /// locally, and whose diametral circle is clear of the boundary. It is on the way between the two
-    /// triangles when they sit on different sides of it; other ways nearby lead past it.
-    fn pass(&mut self, [p, q]: [usize; 2], faces: [usize; 2]) -> Option<Spot> {
+    /// triangles when they sit on different sides of it; other ways nearby lead past it. With it comes the
+    /// unit vector from it towards the first triangle.
+    fn pass(&mut self, [p, q]: [usize; 2], faces: [usize; 2]) -> Option<(Spot, DVec2)> {
         let (a, b) = (self.walls.at(p), self.walls.at(q));
-        let mut best: Option<Spot> = None;
+        let mut best: Option<(Spot, DVec2)> = None;
         let mut offer = |survey: &mut Self, x: DVec2, y: DVec2| {
             let found = Spot { radius: x.distance(y) * 0.5, at: (x + y) * 0.5 };
             let side = |face: usize| (y - x).perp_dot(survey.seats[face] - x) >= 0.0;
-            if best.is_some_and(|b| b.radius <= found.radius) || side(faces[0]) == side(faces[1]) {
+            let first = side(faces[0]);
+            if best.is_some_and(|(b, _)| b.radius <= found.radius) || first == side(faces[1]) {
                 return;
             }
             survey.look(&faces, found.at, found.radius);
             if spot(found.at, &survey.in_sight).radius >= found.radius * (1.0 - ROUNDING) {
-                best = Some(found);
+                let across = (y - x).normalize_or_zero().perp();
+                best = Some((found, if first { across } else { -across }));
             }
         };
         if self.faces_away(p, b) && self.faces_away(q, a) {

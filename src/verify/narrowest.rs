@@ -14,6 +14,8 @@ use super::ascent::{Climber, Spot};
 use super::clearance::{Clearance, Way};
 use crate::planar::Region;
 
+/// How far from a pass a climb begins, as part of its radius: on the pass itself no direction leads up.
+const ASIDE: f64 = 0.05;
 /// Relative slack in a comparison of distances, against rounding only.
 const ROUNDING: f64 = 1e-9;
 /// Legs of a climb to a peak, each at most as long as the radius there.
@@ -80,8 +82,8 @@ enum Doubt {
     None,
     /// A component vanishes here, at the peak above this place.
     Peak,
-    /// A pass, unless the peaks above these places are both high enough.
-    Pass([Spot; 2]),
+    /// It is a pass if on both sides one of the peaks above these places is high enough.
+    Pass([[Spot; 2]; 2]),
 }
 
 /// The narrowest change that holds when the peaks in question are climbed on the boundary itself.
@@ -93,13 +95,13 @@ fn first_change(clearance: &Clearance, climber: &Climber, ink: bool, chord_mm: f
         if best.is_some_and(|b| b.radius <= spot.radius) {
             break;
         }
-        let high = |peak: &Spot| {
-            let needed = spot.radius + chord_mm;
-            peak.radius > needed || climber.climb(*peak).radius > needed
+        let needed = spot.radius + chord_mm;
+        let high = |side: &[Spot; 2]| {
+            side.iter().any(|s| s.radius > needed) || side.iter().any(|&s| climber.climb(s).radius > needed)
         };
         let spot = match doubt {
             Doubt::Peak => climber.climb(spot),
-            Doubt::Pass(peaks) if !peaks.iter().all(high) => continue,
+            Doubt::Pass(sides) if !sides.iter().all(high) => continue,
             // An edge that the triangulation did not look at is in the way: this is no pass.
             _ if climber.look(spot.at).radius < spot.radius * (1.0 - ROUNDING) => continue,
             _ => spot,
@@ -124,8 +126,11 @@ fn changes(clearance: &Clearance, ink: bool, chord_mm: f64) -> Vec<Change> {
         }
         let sides = [a, b].map(|side| peaks.highest[side]);
         peaks.join(a, b);
-        if way.is_pass {
+        if let Some(ahead) = way.ahead {
             let certain = sides.iter().all(|peak| peak.radius - spot.radius > chord_mm);
+            let step = ahead * (ASIDE * spot.radius);
+            let beside = [spot.at + step, spot.at - step].map(|at| Spot { radius: spot.radius, at });
+            let sides = [[sides[0], beside[0]], [sides[1], beside[1]]];
             changes.push(Change { spot, doubt: if certain { Doubt::None } else { Doubt::Pass(sides) } });
         }
     }
