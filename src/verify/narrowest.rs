@@ -14,8 +14,15 @@ use super::ascent::{Climber, Spot};
 use super::clearance::{Clearance, Way};
 use crate::planar::Region;
 
+/// Places are beside the ridges of the distance and look lower than the way through them is. The narrowest
+/// spot of a loop is a pass and no place, so ways without a pass are let through first, if they are lower by
+/// no more than this. Less, and a place is taken for the narrowest spot; more, and one is overlooked when
+/// its pass was not found.
+const PLACE_SLACK: f64 = 1.02;
 /// How far from a pass a climb begins, as part of its radius: on the pass itself no direction leads up.
 const ASIDE: f64 = 0.05;
+/// Climbs that begin around the highest place of a component.
+const STARTS: usize = 8;
 /// Relative slack in a comparison of distances, against rounding only.
 const ROUNDING: f64 = 1e-9;
 /// Legs of a climb to a peak, each at most as long as the radius there.
@@ -59,9 +66,8 @@ pub fn widths(region: &Region, chord_mm: f64) -> Widths {
     let (Some(mut clearance), Some((low, high))) = (Clearance::new(region), region.bounds_mm()) else {
         return Widths::default();
     };
-    clearance
-        .ways
-        .sort_by(|a, b| b.narrowest.radius.total_cmp(&a.narrowest.radius).then(a.ends.cmp(&b.ends)));
+    let height = |way: &Way| way.narrowest.radius * if way.ahead.is_some() { 1.0 } else { PLACE_SLACK };
+    clearance.ways.sort_by(|a, b| height(b).total_cmp(&height(a)).then(a.ends.cmp(&b.ends)));
     // The way around everything runs between the ink and the frame, and is wider than any gap of the ink.
     let outside = (high - low).length();
     let climber = Climber::new(region);
@@ -100,7 +106,13 @@ fn first_change(clearance: &Clearance, climber: &Climber, ink: bool, chord_mm: f
             side.iter().any(|s| s.radius > needed) || side.iter().any(|&s| climber.climb(s).radius > needed)
         };
         let spot = match doubt {
-            Doubt::Peak => climber.climb(spot),
+            // The highest place may be a pass, from where no direction leads up; so begin around it too.
+            Doubt::Peak => {
+                let turns = (0..STARTS).map(|i| i as f64 * std::f64::consts::TAU / STARTS as f64);
+                let around = turns.map(|turn| spot.at + DVec2::from_angle(turn) * (ASIDE * spot.radius));
+                let climbs = around.map(|at| climber.climb(Spot { at, ..spot }));
+                climbs.fold(climber.climb(spot), |a, b| if b.radius > a.radius { b } else { a })
+            }
             Doubt::Pass(sides) if !sides.iter().all(high) => continue,
             // An edge that the triangulation did not look at is in the way: this is no pass.
             _ if climber.look(spot.at).radius < spot.radius * (1.0 - ROUNDING) => continue,
