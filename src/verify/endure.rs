@@ -11,36 +11,39 @@ use crate::planar::{Contour, FillRule, GridPoint, Part, Region};
 /// pieces that vanish with `chord_mm` more are none.
 pub fn endures_erosion(region: &Region, radius_mm: f64, chord_mm: f64) -> bool {
     let eroded = region.offset(-radius_mm, arc_chord(radius_mm, chord_mm));
-    if eroded.components() == region.components() && eroded.holes() == region.holes() {
-        return true;
-    }
-    if eroded.components() < region.components() {
-        return false;
-    }
-    let further_mm = radius_mm + chord_mm;
-    let core = region.offset(-further_mm, arc_chord(further_mm, chord_mm));
     let homes = Homes::new(region);
-    let pieces = Homes::new(&eroded);
-    let mut has_core = vec![false; eroded.parts().len()];
-    for part in core.parts() {
-        if let Some(piece) = pieces.of(part) {
-            has_core[piece] = true;
-        }
-    }
-    let mut left: Vec<Vec<usize>> = vec![Vec::new(); region.parts().len()];
+    let mut pieces: Vec<Vec<usize>> = vec![Vec::new(); region.components()];
     for (i, piece) in eroded.parts().iter().enumerate() {
         if let Some(home) = homes.of(piece) {
-            left[home].push(i);
+            pieces[home].push(i);
         }
     }
-    left.iter().zip(region.parts()).all(|(pieces, part)| {
-        let mut lasting = pieces.iter().filter(|&&i| has_core[i]);
-        let first = lasting.next();
-        let area = |&&i: &&usize| eroded.parts()[i].exterior().doubled_area();
-        let piece = first.or_else(|| pieces.iter().max_by_key(area));
-        lasting.next().is_none()
-            && piece.is_some_and(|&i| eroded.parts()[i].holes().len() == part.holes().len())
+    if pieces.iter().any(|of| of.len() > 1) {
+        keep_lasting(&mut pieces, region, &eroded, radius_mm + chord_mm, chord_mm);
+    }
+    pieces.iter().zip(region.parts()).all(|(of, part)| match of[..] {
+        [piece] => eroded.parts()[piece].holes().len() == part.holes().len(),
+        _ => false,
     })
+}
+
+/// Drops the pieces that vanish by `radius_mm`, but never all of a component.
+fn keep_lasting(pieces: &mut [Vec<usize>], region: &Region, eroded: &Region, radius_mm: f64, chord_mm: f64) {
+    let core = region.offset(-radius_mm, arc_chord(radius_mm, chord_mm));
+    let homes = Homes::new(eroded);
+    let mut lasts = vec![false; eroded.components()];
+    for part in core.parts() {
+        if let Some(piece) = homes.of(part) {
+            lasts[piece] = true;
+        }
+    }
+    for of in pieces.iter_mut().filter(|of| of.len() > 1) {
+        let largest = of.iter().copied().max_by_key(|&i| eroded.parts()[i].exterior().doubled_area());
+        of.retain(|&i| lasts[i]);
+        if of.is_empty() {
+            of.extend(largest);
+        }
+    }
 }
 
 /// Whether no components meet and no gap closes, opens or splits when the ink grows by `radius_mm`; gaps

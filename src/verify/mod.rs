@@ -24,6 +24,7 @@ mod plain;
 mod shells;
 mod stl;
 mod svg;
+mod walls;
 
 pub use check::{Expected, Mismatch};
 pub use endure::{endures_dilation, endures_erosion};
