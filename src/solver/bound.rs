@@ -19,22 +19,24 @@ impl Bound {
     pub(super) fn new(problem: &Problem<'_>, stop: &[Option<Cost>], allowed: &[bool]) -> Self {
         let pieces = problem.pieces();
         let longest = *problem.window.end() as usize;
-        let mut table = vec![NEVER; (longest + 1) * pieces];
+        let widest = problem.widths.iter().copied().max().unwrap_or(0) as usize;
+        // Rows beyond the longest length are never reached from, so that no step has to be checked.
+        let mut table = vec![NEVER; (longest + widest + 1) * pieces];
+        let rows: Vec<(usize, Vec<(usize, Cost)>)> = (0..pieces)
+            .filter(|&piece| allowed[piece])
+            .map(|piece| {
+                let steps = problem.steps[piece].iter().filter(|s| allowed[s.to]);
+                let ahead = |to: usize| problem.widths[to] as usize * pieces + to;
+                (piece, steps.map(|s| (ahead(s.to), s.cost)).collect())
+            })
+            .collect();
         for length in (0..=longest).rev() {
             let may_stop = problem.window.contains(&(length as u32));
-            for piece in 0..pieces {
-                if !allowed[piece] {
-                    continue;
-                }
-                let mut best = if may_stop { stop[piece].unwrap_or(NEVER) } else { NEVER };
-                for step in &problem.steps[piece] {
-                    let longer = length + problem.widths[step.to] as usize;
-                    if longer <= longest {
-                        let rest = table[longer * pieces + step.to];
-                        best = best.min(rest.saturating_add(step.cost));
-                    }
-                }
-                table[length * pieces + piece] = best;
+            let here = length * pieces;
+            for (piece, steps) in &rows {
+                let stopping = if may_stop { stop[*piece].unwrap_or(NEVER) } else { NEVER };
+                let going_on = steps.iter().map(|&(ahead, cost)| table[here + ahead].saturating_add(cost));
+                table[here + piece] = going_on.fold(stopping, Cost::min);
             }
         }
         Self { pieces, table }
