@@ -130,3 +130,53 @@ impl StlReport {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{read_stl, read_svg};
+    use super::*;
+
+    /// Two squares joined by a bar 1 mm wide, and a third one 0.5 mm away.
+    const JOINED: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" width="40mm" height="10mm" viewBox="0 0 40 10">
+        <path d="M0 0L10 0L10 4L20 4L20 0L30 0L30 10L20 10L20 5L10 5L10 10L0 10Z"/>
+        <path d="M30.5 0L40 0L40 10L30.5 10Z"/></svg>"#;
+
+    #[test]
+    fn an_svg_is_checked_by_its_counts_and_at_tolerance() {
+        let report = read_svg(JOINED.as_bytes(), 0.01).unwrap();
+        let fine = Expected { components: Some(2), holes: Some(0), min_feature_mm: 0.98, min_gap_mm: 0.48 };
+        assert_eq!(report.check(&fine), Ok(()));
+        assert_eq!(report.check(&Expected::default()), Ok(()));
+        let wanted = Expected { components: Some(1), ..fine };
+        assert_eq!(report.check(&wanted), Err(Mismatch::Components { found: 2, wanted: 1 }));
+        let wanted = Expected { holes: Some(3), ..fine };
+        assert_eq!(report.check(&wanted), Err(Mismatch::Holes { found: 0, wanted: 3 }));
+        let text = report.check(&Expected { min_feature_mm: 1.02, ..fine }).unwrap_err().to_string();
+        assert!(
+            text.starts_with("ink narrower than 1.02 mm holds the pattern together: 1.000 mm at ("),
+            "{text}"
+        );
+        let text = report.check(&Expected { min_gap_mm: 0.52, ..fine }).unwrap_err().to_string();
+        assert!(
+            text.starts_with("a gap narrower than 0.52 mm keeps the pattern apart: 0.500 mm at (30.250"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn an_stl_is_checked_by_shells_and_genus() {
+        let (o, x, y, z) = ("0 0 0", "1 0 0", "0 1 0", "0 0 1");
+        let facets = [[o, y, x], [o, x, z], [o, z, y], [x, y, z]].map(|[a, b, c]| {
+            format!("facet normal 0 0 0\nouter loop\nvertex {a}\nvertex {b}\nvertex {c}\nendloop\nendfacet\n")
+        });
+        let report =
+            |n: usize| read_stl(format!("solid t\n{}endsolid t\n", facets[..n].concat()).as_bytes()).unwrap();
+        let wanted = Expected { components: Some(1), holes: Some(0), ..Expected::default() };
+        assert_eq!(report(4).check(&wanted), Ok(()));
+        let holed = Expected { holes: Some(1), ..wanted };
+        assert_eq!(report(4).check(&holed), Err(Mismatch::Genus { found: 0, wanted: 1 }));
+        let two = Expected { components: Some(2), ..wanted };
+        assert_eq!(report(4).check(&two), Err(Mismatch::Shells { found: 1, wanted: 2 }));
+        assert!(matches!(report(3).check(&wanted), Err(Mismatch::Faults { count: 3, .. })));
+    }
+}

@@ -343,3 +343,126 @@ impl Sets {
         self.parent[i.max(j)] = i.min(j);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    type Quad = [[i32; 3]; 4];
+
+    /// The boundary of unit cubes at `cells`, two facets to a square.
+    fn cubes(cells: &[[i32; 3]]) -> Vec<Facet> {
+        let mut facets = Vec::new();
+        for &cell in cells {
+            for axis in 0..3 {
+                for up in [false, true] {
+                    let mut beyond = cell;
+                    beyond[axis] += if up { 1 } else { -1 };
+                    if !cells.contains(&beyond) {
+                        facets.extend(square(cell, axis, up));
+                    }
+                }
+            }
+        }
+        facets
+    }
+
+    fn square(cell: [i32; 3], axis: usize, up: bool) -> [Facet; 2] {
+        let corner = |a: i32, b: i32| {
+            let mut p = cell;
+            p[axis] += i32::from(up);
+            p[(axis + 1) % 3] += a;
+            p[(axis + 2) % 3] += b;
+            p
+        };
+        let mut quad: Quad = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
+        if !up {
+            quad.reverse();
+        }
+        let facet = |i: usize, j: usize, k: usize| {
+            let corners = [i, j, k].map(|n| quad[n].map(|x| x as f32));
+            Facet { normal: [0.0; 3], corners }
+        };
+        [facet(0, 1, 2), facet(0, 2, 3)]
+    }
+
+    fn kinds(report: &StlReport) -> Vec<StlFaultKind> {
+        let mut kinds: Vec<_> = report.faults.iter().map(|f| f.kind).collect();
+        kinds.dedup();
+        kinds
+    }
+
+    fn ring() -> Vec<[i32; 3]> {
+        let all = (0..3).flat_map(|x| (0..3).map(move |y| [x, y, 0]));
+        all.filter(|&cell| cell != [1, 1, 0]).collect()
+    }
+
+    #[test]
+    fn a_ring_has_a_tunnel() {
+        let report = survey(&cubes(&ring()));
+        assert_eq!((report.shells.len(), report.genus, report.volume_mm3), (1, 1, 8.0));
+        assert_eq!(report.faults, []);
+        assert_eq!(report.bounds_mm, Some(([0.0; 3], [3.0, 3.0, 1.0])));
+    }
+
+    #[test]
+    fn shells_are_counted_one_by_one() {
+        let mut cells = ring();
+        cells.extend([[5, 0, 0], [9, 0, 0], [9, 1, 0]]);
+        let report = survey(&cubes(&cells));
+        let shells: Vec<_> = report.shells.iter().map(|s| (s.genus, s.volume_mm3.round())).collect();
+        assert_eq!(shells, [(Some(1), 8.0), (Some(0), 1.0), (Some(0), 2.0)]);
+        assert_eq!(report.faults, []);
+    }
+
+    #[test]
+    fn a_cavity_is_no_fault_but_an_inverted_solid_is() {
+        let all = (0..27).map(|i| [i % 3, i / 3 % 3, i / 9]);
+        let hollow: Vec<_> = all.filter(|&cell| cell != [1, 1, 1]).collect();
+        let report = survey(&cubes(&hollow));
+        let mut volumes: Vec<_> = report.shells.iter().map(|s| s.volume_mm3.round()).collect();
+        volumes.sort_by(f64::total_cmp);
+        assert_eq!((volumes, kinds(&report)), (vec![-1.0, 27.0], vec![]));
+        let mut inverted = cubes(&ring());
+        inverted.iter_mut().for_each(|f| f.corners.swap(0, 1));
+        assert_eq!(kinds(&survey(&inverted)), [StlFaultKind::InsideOut]);
+    }
+
+    #[test]
+    fn an_edge_of_four_facets_is_a_fault() {
+        let report = survey(&cubes(&[[0, 0, 0], [1, 1, 0]]));
+        assert_eq!(kinds(&report), [StlFaultKind::CrowdedEdge]);
+        assert_eq!(report.faults[0].position_mm, [1.0, 1.0, 0.5]);
+        assert!(report.shells.iter().all(|s| s.genus.is_none()));
+    }
+
+    #[test]
+    fn a_pinched_vertex_is_a_fault_and_leaves_the_counts() {
+        let report = survey(&cubes(&[[0, 0, 0], [1, 1, 1]]));
+        assert_eq!(kinds(&report), [StlFaultKind::PinchedVertex]);
+        assert_eq!(report.faults[0].position_mm, [1.0; 3]);
+        assert_eq!((report.shells.len(), report.genus, report.vertices), (2, 0, 15));
+    }
+
+    #[test]
+    fn facet_faults_name_the_facet() {
+        let mut facets = cubes(&[[0, 0, 0]]);
+        let last = facets.pop().unwrap();
+        let open = survey(&facets);
+        assert_eq!((kinds(&open), open.shells[0].genus), (vec![StlFaultKind::OpenEdge], None));
+        facets.push(Facet { corners: [last.corners[1], last.corners[0], last.corners[2]], ..last });
+        assert_eq!(kinds(&survey(&facets)), [StlFaultKind::FlippedEdge]);
+        facets[11] = last;
+        facets[3].normal = {
+            let [a, b, c] = facets[3].corners.map(|p| DVec3::from_array(p.map(f64::from)));
+            let n = (b - a).cross(c - a);
+            [-n.x as f32, -n.y as f32, -n.z as f32]
+        };
+        let turned = survey(&facets);
+        assert_eq!((kinds(&turned), turned.faults[0].facet), (vec![StlFaultKind::Normal], 3));
+        facets.push(last);
+        assert!(kinds(&survey(&facets)).contains(&StlFaultKind::Duplicate));
+        facets.push(Facet { corners: [[0.0; 3], [0.5; 3], [1.0; 3]], ..last });
+        assert!(survey(&facets).faults.iter().any(|f| f.kind == StlFaultKind::Degenerate && f.facet == 13));
+    }
+}

@@ -79,7 +79,7 @@ pub enum SvgFault {
         #[serde(serialize_with = "super::json::point")]
         position_mm: DVec2,
     },
-    /// A subpath without area.
+    /// A subpath without area, or one whose loops cancel.
     Degenerate {
         /// The element.
         element: String,
@@ -111,7 +111,7 @@ impl fmt::Display for SvgFault {
             }
             Self::Degenerate { element, position_mm } => {
                 write!(f, "{element}: ")?;
-                ("a subpath has no area", position_mm)
+                ("a subpath has no area, or its loops cancel", position_mm)
             }
             Self::OutsidePage { position_mm } => ("ink reaches beyond the page", position_mm),
         };
@@ -164,8 +164,12 @@ fn count(drawing: &Drawing, chord_mm: f64) -> Result<SvgReport, VerifyError> {
                 let (element, position_mm) = (shape.element.clone(), l.points[0]);
                 match Contour::new(path.clone()) {
                     None => faults.push(SvgFault::Degenerate { element, position_mm }),
-                    Some(_) if !l.closed => faults.push(SvgFault::Open { element, position_mm }),
-                    Some(contour) => contours.push(contour),
+                    Some(contour) => {
+                        contours.push(contour);
+                        if !l.closed {
+                            faults.push(SvgFault::Open { element, position_mm });
+                        }
+                    }
                 }
             }
             paths.push(path);
@@ -274,5 +278,129 @@ impl fmt::Display for SvgReport {
         }
         write!(f, "faults       {}", self.faults.len())?;
         self.faults.iter().take(super::shells::FAULTS_SHOWN).try_for_each(|fault| write!(f, "\n  {fault}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CHORD: f64 = 0.01;
+
+    /// A plain file with a page of 40 by 20 mm.
+    fn plain(body: &str) -> String {
+        format!(
+            r#"<svg xmlns="http://www.w3.org/2000/svg" width="40mm" height="20mm" viewBox="0 0 40 20">{body}</svg>"#
+        )
+    }
+
+    fn read(text: &str) -> SvgReport {
+        read_svg(text.as_bytes(), CHORD).unwrap()
+    }
+
+    fn counts(text: &str) -> (usize, usize, usize) {
+        let report = read(text);
+        (report.components, report.holes, report.faults.len())
+    }
+
+    #[test]
+    fn counts_a_plain_file() {
+        let report = read(&plain(
+            r##"<desc>two</desc><g fill="#000"><path id="a" fill-rule="evenodd" d="M1 1L11 1L11 11L1 11ZM3 3L9 3L9 9L3 9Z"/><path d="M20 1L22 1L22 3Z"/></g>"##,
+        ));
+        assert_eq!((report.components, report.holes), (2, 1));
+        assert_eq!(report.faults, []);
+        assert!((report.area_mm2 - 66.0).abs() < 1e-6);
+        let (low, high) = report.bounds_mm.unwrap();
+        assert!(low.distance(DVec2::new(1.0, 9.0)) < 1e-6 && high.distance(DVec2::new(22.0, 19.0)) < 1e-6);
+        assert!((report.min_feature.unwrap().width_mm - 2.0 * 0.585_786).abs() < 1e-3);
+        assert!((report.min_gap.unwrap().width_mm - 6.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn curves_stay_within_the_chord() {
+        let circle = "M15 10C15 12.7614 12.7614 15 10 15C7.2386 15 5 12.7614 5 10C5 7.2386 7.2386 5 10 5C12.7614 5 15 7.2386 15 10Z";
+        let report = read(&plain(&format!(r#"<path d="{circle}"/>"#)));
+        assert!((report.area_mm2 - 25.0 * std::f64::consts::PI).abs() < 10.0 * std::f64::consts::PI * CHORD);
+        assert!((report.min_feature.unwrap().width_mm - 10.0).abs() < 2.0 * CHORD);
+    }
+
+    #[test]
+    fn faults_are_named_and_do_not_change_the_counts() {
+        let bow = read(&plain(r#"<path d="M0 0L4 4L4 0L0 8Z"/>"#));
+        assert_eq!((bow.components, bow.holes), (2, 0));
+        let near = |p: DVec2| p.distance(DVec2::new(8.0 / 3.0, 20.0 - 8.0 / 3.0)) < 1e-4;
+        assert!(
+            bow.faults.iter().any(|f| matches!(f, SvgFault::Crossing { position_mm } if near(*position_mm)))
+        );
+        let open = read(&plain(r#"<path id="tail" d="M1 1L5 1L5 5"/>"#));
+        assert_eq!(open.components, 1);
+        let text = open.faults[0].to_string();
+        assert_eq!(text, "<path id=\"tail\">: a filled subpath is not closed at (1.0000, 19.0000) mm");
+        let twice = read(&plain(r#"<path d="M0 0L4 0L4 4L0 4Z"/><path d="M0 0L4 0L4 4L0 4Z"/>"#));
+        assert_eq!((twice.components, twice.holes), (1, 0));
+        assert!(twice.faults.contains(&SvgFault::Overlap { area_mm2: 16.0 }), "{:?}", twice.faults);
+        let out = read(&plain(r#"<path d="M38 1L42 1L42 5Z"/>"#));
+        assert!(matches!(out.faults[..], [SvgFault::OutsidePage { .. }]));
+        let flat = read(&plain(r#"<path d="M1 1L5 1L5 5ZM8 1L9 1Z"/>"#));
+        assert!(matches!(flat.faults[..], [SvgFault::Degenerate { .. }]));
+    }
+
+    #[test]
+    fn either_winding_is_in_order() {
+        assert_eq!(counts(&plain(r#"<path d="M1 1L1 11L11 11L11 1ZM3 3L9 3L9 9L3 9Z"/>"#)), (1, 1, 0));
+        assert_eq!(counts(&plain(r#"<path d="M1 1L11 1L11 11L1 11ZM3 3L3 9L9 9L9 3Z"/>"#)), (1, 1, 0));
+    }
+
+    #[test]
+    fn other_files_are_resolved() {
+        let shapes = r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 200 100" width="200" height="100">
+            <style>.hole { fill: none; stroke: #000; stroke-width: 4 }</style>
+            <g transform="translate(10 10) scale(2)"><circle class="hole" cx="10" cy="10" r="8"/></g>
+            <rect id="a" x="100" y="10" width="20" height="20"/>
+            <use href="\x23a" x="40"/></svg>"#;
+        let report = read(&shapes.replace("\\x23", "#"));
+        assert_eq!((report.components, report.holes), (3, 1));
+        let px = 25.4 / 96.0;
+        assert!((report.page_mm - DVec2::new(200.0, 100.0) * px).length() < 1e-3);
+        // The stroke is 8 px wide after scaling, the squares are 20 px.
+        assert!((report.min_feature.unwrap().width_mm - 8.0 * px).abs() < 3.0 * CHORD);
+    }
+
+    #[test]
+    fn both_readers_agree() {
+        let body = r##"<path fill="#123456" d="M1 1C4 -1 8 4 11 1L11 11L1 11ZM3 5L9 5L9 9L3 9Z" fill-rule="evenodd"/>"##;
+        let (exact, resolved) =
+            (read(&plain(body)), read(&plain(&format!(r#"<g opacity="0.9">{body}</g>"#))));
+        assert_eq!((exact.components, exact.holes), (resolved.components, resolved.holes));
+        assert!((exact.area_mm2 - resolved.area_mm2).abs() < 1e-3);
+    }
+
+    #[test]
+    fn what_cannot_be_judged_is_an_error() {
+        let error = |text: &str| read_svg(text.as_bytes(), CHORD).unwrap_err();
+        let text = error(&plain("<text id=\"t\">hello</text>")).to_string();
+        assert_eq!(text, "<text id=\"t\"> on line 1: text cannot be counted; convert it to paths");
+        assert!(matches!(error("<svg"), VerifyError::Xml { .. }));
+        assert!(matches!(error("<html/>"), VerifyError::NotSvg { .. }));
+        assert!(matches!(error(&plain(r#"<path d="M1 1Q"/>"#)), VerifyError::PathData { .. }));
+        assert!(matches!(error(&plain(r#"<path d="M1 1L1e30 1L3 3Z"/>"#)), VerifyError::Coordinate { .. }));
+        assert!(matches!(read_svg(b"\xff", CHORD), Err(VerifyError::NotText { offset: 0 })));
+    }
+
+    #[test]
+    fn no_ink_is_nothing() {
+        let report = read(&plain(""));
+        assert_eq!((report.components, report.holes, report.bounds_mm), (0, 0, None));
+        assert_eq!((report.min_feature, report.min_gap), (None, None));
+    }
+
+    #[test]
+    fn json_has_stable_names() {
+        let json = serde_json::to_value(read(&plain(r#"<path d="M0 0L4 4L4 0L0 8Z"/>"#))).unwrap();
+        assert_eq!(json["components"], 2);
+        assert_eq!(json["page_mm"], serde_json::json!([40.0, 20.0]));
+        assert_eq!(json["faults"][0]["kind"], "crossing");
+        assert!(json["min_feature"]["width_mm"].is_f64());
     }
 }
