@@ -48,8 +48,14 @@ fn a_coordinate_that_is_no_place() {
     let refuses = |file: &str, words: &[&str]| {
         room.refuses(&format!("band {file} --along line:60mm -o out.svg"), 2, words);
     };
-    refuses("nan.svg", &["<path id=\"leaf\"> on line 2", "beyond segment 2", "NaN", "correct the d attribute"]);
-    refuses("far.svg", &["<path id=\"leaf\"> on line 3", "1e30 is out of range", "1e9", "correct the element"]);
+    refuses(
+        "nan.svg",
+        &["<path id=\"leaf\"> on line 2", "beyond segment 2", "NaN", "correct the d attribute"],
+    );
+    refuses(
+        "far.svg",
+        &["<path id=\"leaf\"> on line 3", "1e30 is out of range", "1e9", "correct the element"],
+    );
 }
 
 /// A rail with two eyes, drawn tidily.
@@ -202,7 +208,11 @@ fn an_output_that_cannot_be_a_file() {
     refuses("-o out", &["--output", "out does not say a format", ".svg, .stl or .png"]);
     refuses("", &["--output <FILE>"]);
     room.refuses("extrude vine.svg -o out.svg", 2, &["--output", "out.svg is not a solid", ".stl"]);
-    room.refuses("extrude vine.svg -o no/out.stl", 2, &["cannot write no/out.stl", "make the directory first"]);
+    room.refuses(
+        "extrude vine.svg -o no/out.stl",
+        2,
+        &["cannot write no/out.stl", "make the directory first"],
+    );
     room.refuses("analyze vine.svg -o out.stl", 2, &["--output", "out.stl", ".svg or .png"]);
 }
 
@@ -257,13 +267,19 @@ fn a_band_that_folds_or_meets_itself() {
     };
     refuses("--along circle:5mm", &["folds at (", "radius of 2.500 mm", "narrower --width"]);
     // The paths cross in the middle of the page; the edges of the band meet first, a little before.
-    refuses("--along path:curves.svg#eight --width 0.2", &["meets itself at (60.", "along the curve", "--width"]);
+    refuses(
+        "--along path:curves.svg#eight --width 0.2",
+        &["meets itself at (60.", "along the curve", "--width"],
+    );
     refuses(
         "--along path:curves.svg#corner --width 6",
         &["corner of -90.0 degrees at (80.000, 50.000) mm", "70.000 mm along it", "--round RADIUS"],
     );
     refuses("--along path:curves.svg#corner --width 6 --round 45mm", &["45 mm", "smaller radius"]);
-    refuses("--along path:curves.svg#corner --width 6 --round 0", &["rounding corners is 0 mm", "more than 0"]);
+    refuses(
+        "--along path:curves.svg#corner --width 6 --round 0",
+        &["rounding corners is 0 mm", "more than 0"],
+    );
     room.succeeds("band vine.svg --along path:curves.svg#corner --width 6 --round 8mm -o out.svg --quiet");
 }
 
@@ -298,6 +314,9 @@ fn a_result_that_the_machine_cannot_make() {
         room.refuses(&format!("band vine.svg --along line:120mm --width 8mm {outputs} {option}"), 4, words);
     };
     let (place, end) = (" mm at (", "Nothing was written");
-    refuses("--min-feature 0.5mm", &["ink narrower than 0.5 mm", place, "--width", "a smaller --min-feature", end]);
+    refuses(
+        "--min-feature 0.5mm",
+        &["ink narrower than 0.5 mm", place, "--width", "a smaller --min-feature", end],
+    );
     refuses("--min-gap 0.5mm", &["a gap narrower than 0.5 mm", place, "--width", "a smaller --min-gap", end]);
 }

@@ -46,7 +46,8 @@ impl Room {
 
     /// Writes a drawing of 120 mm by 60 mm in which one user unit is one millimetre.
     pub fn draw(&self, name: &str, body: &str) {
-        let head = "<svg xmlns='http://www.w3.org/2000/svg' width='120mm' height='60mm' viewBox='0 0 120 60'>";
+        let head =
+            "<svg xmlns='http://www.w3.org/2000/svg' width='120mm' height='60mm' viewBox='0 0 120 60'>";
         self.write(name, &format!("{head}\n{body}\n</svg>\n"));
     }
 
