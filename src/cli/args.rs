@@ -23,8 +23,10 @@ pub(super) enum Command {
     #[command(after_help = BAND_HELP)]
     Band(Box<BandArguments>),
     /// Show how an exemplar is understood: critical points, cuts, pieces, portals, descriptors
+    #[command(after_help = ANALYZE_HELP)]
     Analyze(AnalyzeArguments),
     /// Extrude any SVG, as it is, to a verified solid
+    #[command(after_help = EXTRUDE_HELP)]
     Extrude(ExtrudeArguments),
     /// Count components and holes (SVG) or shells and genus (STL) of a file, and check them
     #[command(after_help = VERIFY_HELP)]
@@ -33,6 +35,7 @@ pub(super) enum Command {
 
 const BAND_HELP: &str = "\
 Lengths take mm, cm, in, pt or px (96 to the inch); a bare number is millimetres.
+Positions in messages are millimetres from the lower left corner of the page, y up.
 
 Examples:
   A bracelet in one piece that closes on itself:
@@ -46,11 +49,33 @@ Examples:
 Exit codes: 0 done; 2 the input or an argument is wrong; 3 the constraints cannot be met;
 4 the result failed verification and nothing was written; 1 a bug of ours.";
 
-const VERIFY_HELP: &str = "\
-Exit code 4 when the file is not as asked for, 2 when it cannot be read.
+const ANALYZE_HELP: &str = "\
+Lengths take mm, cm, in, pt or px (96 to the inch); a bare number is millimetres.
+
+Examples:
+  A table of the pieces, and a picture of the cuts:
+    openwork analyze vine.svg -o cuts.svg
+  As JSON, at the height that a band is to have:
+    openwork analyze vine.svg --width 14mm --json";
+
+const EXTRUDE_HELP: &str = "\
+Lengths take mm, cm, in, pt or px (96 to the inch); a bare number is millimetres.
 
 Example:
-  openwork verify sign.svg --components 1 --holes 0 --min-feature 0.5mm";
+  openwork extrude sign.svg --thickness 3mm -o sign.stl
+
+Exit codes: 0 done; 2 the drawing or an argument is wrong; 4 the solid failed verification and nothing
+was written; 1 a bug of ours.";
+
+const VERIFY_HELP: &str = "\
+Lengths take mm, cm, in, pt or px (96 to the inch); a bare number is millimetres.
+Exit code 4 when the file is not as asked for, 2 when it cannot be read.
+
+Examples:
+  One piece that a nozzle of 0.5 mm can print:
+    openwork verify sign.svg --components 1 --holes 0 --min-feature 0.5mm
+  What a solid has, as JSON:
+    openwork verify sign.stl --json";
 
 #[derive(Debug, Args)]
 pub(super) struct BandArguments {
@@ -60,13 +85,13 @@ pub(super) struct BandArguments {
     #[arg(long, value_name = "SPEC", value_parser = values::curve)]
     pub(super) along: CurveSpec,
     /// Height of the band; the exemplar is scaled to it [default: the exemplar's own height]
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_negative_numbers = true)]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(super) width: Option<f64>,
     /// Exactly so many connected components [default: free]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(super) components: Option<u32>,
     /// Exactly so many holes; the inside of a closed ring is one [default: free]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(super) holes: Option<u32>,
     /// The pattern must go all the way round a closed curve
     #[arg(long)]
@@ -75,7 +100,7 @@ pub(super) struct BandArguments {
     #[arg(long, value_name = "RULE", value_parser = values::slicing, default_value = "reeb")]
     pub(super) slicing: SlicingChoice,
     /// Another seed gives another band near the optimum [default: the optimum]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(super) seed: Option<u64>,
     /// Weight of the autocorrelation: more gives less repetition
     #[arg(long, value_name = "BETA", default_value_t = 0.0, allow_negative_numbers = true)]
@@ -87,10 +112,10 @@ pub(super) struct BandArguments {
     #[arg(long, value_name = "LAMBDA", default_value_t = 1.0, allow_negative_numbers = true)]
     pub(super) jump_cost: f64,
     /// Thickness of the solid
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "2mm", allow_negative_numbers = true)]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "2mm", allow_hyphen_values = true)]
     pub(super) thickness: f64,
     /// Round corners of the path to this radius [default: a corner is an error]
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_negative_numbers = true)]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(super) round: Option<f64>,
     #[command(flatten)]
     pub(super) tolerances: ToleranceArguments,
@@ -108,13 +133,13 @@ pub(super) struct BandArguments {
 #[derive(Debug, Clone, Args)]
 pub(super) struct ToleranceArguments {
     /// Narrowest ink the machine makes; counts must survive eroding by half of it [default: not checked]
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_negative_numbers = true)]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(super) min_feature: Option<f64>,
     /// Narrowest gap the machine keeps open; counts must survive dilating by half of it [default: not checked]
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_negative_numbers = true)]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(super) min_gap: Option<f64>,
     /// Greatest distance between a curve and what stands for it
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "0.01mm", allow_negative_numbers = true)]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "0.01mm", allow_hyphen_values = true)]
     pub(super) chord: f64,
 }
 
@@ -123,7 +148,7 @@ pub(super) struct AnalyzeArguments {
     /// The ornament (SVG)
     pub(super) exemplar: PathBuf,
     /// Height to which the exemplar is scaled [default: its own]
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_negative_numbers = true)]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(super) width: Option<f64>,
     /// Where the exemplar is cut: reeb, reeb:LENGTH or uniform:T
     #[arg(long, value_name = "RULE", value_parser = values::slicing, default_value = "reeb")]
@@ -146,10 +171,10 @@ pub(super) struct ExtrudeArguments {
     /// The drawing (SVG)
     pub(super) file: PathBuf,
     /// Thickness of the solid
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "2mm", allow_negative_numbers = true)]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "2mm", allow_hyphen_values = true)]
     pub(super) thickness: f64,
     /// Greatest distance between a curve and its chords
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "0.01mm", allow_negative_numbers = true)]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "0.01mm", allow_hyphen_values = true)]
     pub(super) chord: f64,
     /// The solid to write (.stl; - for standard output)
     #[arg(short, long, value_name = "FILE", required = true)]
@@ -167,10 +192,10 @@ pub(super) struct VerifyArguments {
     /// The file (.svg or .stl)
     pub(super) file: PathBuf,
     /// Components (SVG) or shells (STL) that it must have
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(super) components: Option<usize>,
     /// Holes (SVG) or total genus (STL) that it must have
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(super) holes: Option<usize>,
     #[command(flatten)]
     pub(super) tolerances: ToleranceArguments,

@@ -4,6 +4,14 @@
 //! only, go to standard error. Exit codes: 0 done, 2 wrong input or arguments, 3 constraints that cannot be
 //! met, 4 failed verification, 1 a bug of ours, 130 interrupted.
 
+/// Prints a line to standard error; with nobody there to read it, nothing is lost.
+macro_rules! say {
+    ($($message:tt)*) => {{
+        use std::io::Write;
+        let _ = writeln!(std::io::stderr(), $($message)*);
+    }};
+}
+
 mod args;
 mod progress;
 mod run;
@@ -29,7 +37,7 @@ pub fn main() -> ExitCode {
     match run::run(arguments) {
         Ok(code) => code,
         Err(error) => {
-            eprintln!("error: {error}");
+            say!("error: {error}");
             ExitCode::from(error.exit_code())
         }
     }

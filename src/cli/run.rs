@@ -74,6 +74,18 @@ fn output(path: &Path, stdout: Format) -> Result<Output, JobError> {
     if path.as_os_str() == "-" { Ok(Output::stdout(stdout)) } else { Output::file(path) }
 }
 
+/// Standard output cannot carry a file and JSON.
+fn refuse_json_beside(json: bool, outputs: &[Output]) -> Result<(), JobError> {
+    if json && outputs.iter().any(|output| *output.target() == Target::Stdout) {
+        return Err(JobError::Option {
+            option: "--json",
+            found: "standard output is already taken by --output -".to_owned(),
+            wanted: "give the output a name, or leave out --json".to_owned(),
+        });
+    }
+    Ok(())
+}
+
 fn run_band(arguments: &BandArguments) -> Result<ExitCode, CliError> {
     let outputs: Vec<Output> =
         arguments.output.iter().map(|path| output(path, Format::Svg)).collect::<Result<_, _>>()?;
@@ -81,8 +93,8 @@ fn run_band(arguments: &BandArguments) -> Result<ExitCode, CliError> {
         .report
         .as_ref()
         .map(|path| if path.as_os_str() == "-" { Target::Stdout } else { Target::File(path.clone()) });
-    Output::check_distinct(outputs.iter().map(Output::target).chain(report_target.as_ref()))?;
     let job = builder(arguments).build()?;
+    job.check_outputs(&outputs, report_target.as_ref())?;
     let progress = Progress::new(arguments.quiet);
     let band = job.run(&mut |stage| progress.show(stage))?;
     let report = band.write(&outputs, report_target.as_ref(), &mut |stage| progress.show(stage))?;
@@ -124,27 +136,32 @@ fn builder(a: &BandArguments) -> BandBuilder {
 
 fn say_band(report: &BandReport) {
     let closed = if report.closed_pattern { ", closed all the way round" } else { "" };
-    eprintln!(
+    say!(
         "{} component(s), {} hole(s){closed}: {} pieces along {:.1} mm, {} jumps",
-        report.components, report.holes, report.pieces_in_result, report.length_mm, report.seams.jumps
+        report.components,
+        report.holes,
+        report.pieces_in_result,
+        report.length_mm,
+        report.seams.jumps
     );
     let widths = [("ink", report.min_feature), ("gap", report.min_gap)];
     for (what, narrowest) in widths.iter().filter_map(|(what, n)| n.map(|n| (what, n))) {
         let p = narrowest.position_mm;
-        eprintln!("narrowest {what} {:.3} mm, at ({:.1}, {:.1}) mm", narrowest.width_mm, p.x, p.y);
+        say!("narrowest {what} {:.3} mm, at ({:.1}, {:.1}) mm", narrowest.width_mm, p.x, p.y);
     }
     for note in &report.notes {
-        eprintln!("note: {note}");
+        say!("note: {note}");
     }
     for file in &report.files {
-        eprintln!("wrote {file}");
+        say!("wrote {file}");
     }
 }
 
 fn run_analyze(arguments: &AnalyzeArguments) -> Result<ExitCode, CliError> {
     let outputs: Vec<Output> =
         arguments.output.iter().map(|path| output(path, Format::Svg)).collect::<Result<_, _>>()?;
-    Output::check_distinct(outputs.iter().map(Output::target))?;
+    Output::check(outputs.iter().map(Output::target), &[&arguments.exemplar])?;
+    refuse_json_beside(arguments.json, &outputs)?;
     if let Some(stl) = outputs.iter().find(|o| o.format() == Format::Stl) {
         return Err(CliError::Job(JobError::Option {
             option: "--output",
@@ -205,6 +222,7 @@ fn run_extrude(arguments: &ExtrudeArguments) -> Result<ExitCode, CliError> {
             wanted: "end the name in .stl".to_owned(),
         }));
     }
+    refuse_json_beside(arguments.json, std::slice::from_ref(&output))?;
     let tolerances = Tolerances::new(arguments.chord, 0.0, 0.0)?;
     let progress = Progress::new(arguments.quiet);
     let made = extrude(&arguments.file, arguments.thickness, &tolerances, &output, &mut |stage| {
@@ -215,7 +233,7 @@ fn run_extrude(arguments: &ExtrudeArguments) -> Result<ExitCode, CliError> {
         print_json(&made)?;
     }
     if !arguments.quiet {
-        eprintln!(
+        say!(
             "{} shell(s), total genus {}: {} facets, {:.1} mm3",
             made.solid.shells.len(),
             made.solid.genus,
@@ -223,7 +241,7 @@ fn run_extrude(arguments: &ExtrudeArguments) -> Result<ExitCode, CliError> {
             made.solid.volume_mm3
         );
         for note in &made.notes {
-            eprintln!("note: {note}");
+            say!("note: {note}");
         }
     }
     Ok(ExitCode::SUCCESS)

@@ -17,7 +17,7 @@ mod stl;
 mod svg;
 
 pub use png::{DEFAULT_PIXELS, png};
-pub use staged::{Staged, persist_all, remove_staged, stage};
+pub use staged::{Staged, check_destination, persist_all, remove_staged, stage};
 pub use stl::stl;
 pub use svg::{SvgDocument, SvgOptions, svg};
 

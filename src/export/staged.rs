@@ -6,7 +6,7 @@
 //! that is interrupted, [`remove_staged`] does.
 
 use std::collections::BTreeSet;
-use std::fs;
+use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -72,6 +72,44 @@ impl Drop for Staged {
 /// [`ExportError::NotAFile`] when `path` names a directory or a device, [`ExportError::Write`] when the
 /// directory is missing, cannot be written to, or is full. Nothing is left behind.
 pub fn stage(path: &Path, bytes: &[u8]) -> Result<Staged, ExportError> {
+    let destination = destination(path)?;
+    let suffix = destination.extension().map(|e| format!(".{}", e.to_string_lossy())).unwrap_or_default();
+    let mut registry = registry();
+    // The reason is kept as the system gave it: the temporary name would only confuse.
+    let mut reason = None;
+    // With the permissions that any new file gets.
+    let create = |name: &Path| {
+        File::options().write(true).create_new(true).open(name).inspect_err(|e| reason = e.raw_os_error())
+    };
+    let made =
+        Builder::new().prefix(".openwork-").suffix(&suffix).make_in(directory_of(&destination), create);
+    let mut file =
+        made.map_err(|error| ExportError::write(path, reason.map_or(error, io::Error::from_raw_os_error)))?;
+    registry.insert(file.path().to_owned());
+    drop(registry);
+    let written = file.write_all(bytes).and_then(|()| file.flush());
+    // From here on, every way out removes the file.
+    let staged = Staged { destination, temporary: Some(file.into_temp_path()) };
+    written.map_err(|error| ExportError::write(path, error))?;
+    Ok(staged)
+}
+
+/// Whether a file could be written at `path`, as far as can be told without writing: it is no directory, and
+/// its directory is there.
+///
+/// # Errors
+/// As for [`stage`].
+pub fn check_destination(path: &Path) -> Result<(), ExportError> {
+    let destination = destination(path)?;
+    match fs::metadata(directory_of(&destination)) {
+        Ok(found) if found.is_dir() => Ok(()),
+        Ok(_) => Err(ExportError::write(path, io::ErrorKind::NotADirectory.into())),
+        Err(error) => Err(ExportError::write(path, error)),
+    }
+}
+
+/// The file that `path` names, links followed.
+fn destination(path: &Path) -> Result<PathBuf, ExportError> {
     let destination = match fs::metadata(path) {
         Ok(found) if found.is_file() => {
             fs::canonicalize(path).map_err(|error| ExportError::write(path, error))?
@@ -83,28 +121,14 @@ pub fn stage(path: &Path, bytes: &[u8]) -> Result<Staged, ExportError> {
     if destination.file_name().is_none() || path.as_os_str().to_string_lossy().ends_with(['/', '\\']) {
         return Err(ExportError::NotAFile { path: path.to_owned() });
     }
-    let directory = match destination.parent() {
+    Ok(destination)
+}
+
+fn directory_of(file: &Path) -> &Path {
+    match file.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
-    };
-    let suffix = destination.extension().map(|e| format!(".{}", e.to_string_lossy())).unwrap_or_default();
-    let mut builder = Builder::new();
-    builder.prefix(".openwork-").suffix(&suffix);
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // The umask takes away what it takes from every new file.
-        builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let mut registry = registry();
-    let mut file = builder.tempfile_in(directory).map_err(|error| ExportError::write(path, error))?;
-    registry.insert(file.path().to_owned());
-    drop(registry);
-    let written = file.write_all(bytes).and_then(|()| file.flush());
-    // From here on, every way out removes the file.
-    let staged = Staged { destination, temporary: Some(file.into_temp_path()) };
-    written.map_err(|error| ExportError::write(path, error))?;
-    Ok(staged)
 }
 
 /// Gives all files their names, in order.
@@ -182,10 +206,14 @@ mod tests {
         assert!(message(room.path()).contains("not a file"));
         assert!(message(&room.path().join("new/")).contains("not a file"));
         let missing = message(&room.path().join("no/a.svg"));
-        assert!(missing.contains("no/a.svg") && missing.contains("directory"), "{missing}");
+        assert!(missing.contains("no/a.svg: No such file") && !missing.contains(".openwork"), "{missing}");
         let file = room.path().join("file");
         fs::write(&file, "").unwrap();
         assert!(message(&file.join("a.svg")).contains("a.svg"));
+        for wrong in ["", "new/", "no/a.svg", "file/a.svg"].map(|name| room.path().join(name)) {
+            assert_eq!(check_destination(&wrong).unwrap_err().to_string(), message(&wrong));
+        }
+        assert!(check_destination(&room.path().join("new.svg")).is_ok() && check_destination(&file).is_ok());
         assert_eq!(names(room.path()), ["file"]);
     }
 

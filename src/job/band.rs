@@ -123,7 +123,7 @@ impl Band {
         report_file: Option<&Target>,
         progress: &mut dyn FnMut(Stage),
     ) -> Result<BandReport, JobError> {
-        Output::check_distinct(outputs.iter().map(Output::target).chain(report_file))?;
+        self.job.check_outputs(outputs, report_file)?;
         let mut clock = Clock::new(progress);
         let mut report = self.report.clone();
         let expected = Expected {
@@ -314,16 +314,13 @@ fn make_part(
         match clock.time(Stage::Map, || Part::new(&outline, map, planned, chord_mm * MAP_SHARE)) {
             Ok(part) => return Ok((part, outline)),
             Err(PartError::Job(error)) => return Err(error),
-            Err(PartError::Untrue { components, holes, place }) => last = Some((components, holes, place)),
+            Err(PartError::Untrue(fault)) => last = Some(fault),
         }
     }
-    let (found_components, found_holes, place) = last.unwrap_or_default();
     Err(JobError::Outline {
-        found_components,
-        found_holes,
         components: planned.components as usize,
         holes: planned.holes as usize,
-        place,
+        fault: last.expect("a try either returns or leaves a fault"),
     })
 }
 

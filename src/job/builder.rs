@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::band::Band;
 use super::error::JobError;
+use super::output::{Output, Target};
 use super::stage::Stage;
 use crate::domain::CurveSpec;
 use crate::pieces::CostWeights;
@@ -202,6 +203,20 @@ pub struct BandJob {
 }
 
 impl BandJob {
+    /// Refuses outputs that would overwrite each other or an input, or that cannot be files. Writing does so
+    /// too; a job takes a while, though, and this can be known before it.
+    ///
+    /// # Errors
+    /// As [`Output::check`].
+    pub fn check_outputs(&self, outputs: &[Output], report_file: Option<&Target>) -> Result<(), JobError> {
+        let curve = match &self.options.along {
+            CurveSpec::Path { file, .. } => Some(file.as_path()),
+            CurveSpec::Line { .. } | CurveSpec::Circle { .. } => None,
+        };
+        let inputs: Vec<&Path> = std::iter::once(self.options.exemplar.as_path()).chain(curve).collect();
+        Output::check(outputs.iter().map(Output::target).chain(report_file), &inputs)
+    }
+
     /// Makes the band; `progress` is told of each stage as it begins.
     ///
     /// # Errors

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use glam::DVec2;
 use thiserror::Error;
 
 use crate::domain::DomainError;
@@ -58,19 +59,15 @@ pub enum JobError {
     Fit(#[from] FitError),
     /// The mapped outline does not have the planned topology.
     #[error(
-        "the outline came out with {found_components} component(s) and {found_holes} hole(s) where {components} and {holes} were planned{place}; the ornament has ink or gaps finer than the chord error: use a smaller --chord or a larger --width. Nothing was written"
+        "the band does not have the {components} component(s) and {holes} hole(s) that were planned: {fault}; the ornament has ink or gaps finer than the chord error: use a smaller --chord or a larger --width. Nothing was written"
     )]
     Outline {
-        /// Components found.
-        found_components: usize,
-        /// Holes found.
-        found_holes: usize,
         /// Components planned.
         components: usize,
         /// Holes planned.
         holes: usize,
-        /// Where contours touch, if they do.
-        place: String,
+        /// What is there instead.
+        fault: OutlineFault,
     },
     /// The solid cannot be made.
     #[error(transparent)]
@@ -95,6 +92,25 @@ pub enum JobError {
         mismatch: Mismatch,
         /// What would help.
         remedy: String,
+    },
+}
+
+/// How a mapped outline differs from the plan.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum OutlineFault {
+    /// Contours cross or touch, so that it bounds no region.
+    #[error("contours meet at ({:.3}, {:.3}) mm on its page", position_mm.x, position_mm.y)]
+    Contact {
+        /// Where, from the lower left corner of the page, y up.
+        position_mm: DVec2,
+    },
+    /// Other counts.
+    #[error("it came out with {components} and {holes}")]
+    Counts {
+        /// Components found.
+        components: usize,
+        /// Holes found.
+        holes: usize,
     },
 }
 

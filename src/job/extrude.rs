@@ -47,6 +47,7 @@ pub fn extrude(
     output: &Output,
     progress: &mut dyn FnMut(Stage),
 ) -> Result<ExtrudeReport, JobError> {
+    Output::check([output.target()], &[file])?;
     let mut clock = Clock::new(progress);
     let options =
         ReadOptions { chord_mm: tolerances.chord_mm(), target_height_mm: None, limits: Limits::default() };

@@ -35,7 +35,7 @@ mod stage;
 
 pub use band::Band;
 pub use builder::{BandBuilder, BandJob, SlicingChoice};
-pub use error::JobError;
+pub use error::{JobError, OutlineFault};
 pub use extrude::{ExtrudeReport, extrude};
 pub use output::{Format, Output, Target};
 pub use plan::{Plan, PlanError, PlanOptions, plan};

@@ -72,30 +72,52 @@ impl Output {
         &self.target
     }
 
-    /// Refuses outputs that would overwrite each other.
+    /// Refuses, before anything is computed, outputs that would overwrite each other or one of `inputs`, and
+    /// those that cannot be files.
     ///
     /// # Errors
-    /// [`JobError::Option`] names the file that stands there twice.
-    pub fn check_distinct<'a>(targets: impl IntoIterator<Item = &'a Target>) -> Result<(), JobError> {
+    /// [`JobError::Option`] names the file that stands there twice; [`JobError::Export`] as
+    /// [`export::check_destination`].
+    pub fn check<'a>(
+        targets: impl IntoIterator<Item = &'a Target>,
+        inputs: &[&Path],
+    ) -> Result<(), JobError> {
+        let inputs: Vec<PathBuf> = inputs.iter().map(|path| identity(path)).collect();
         let mut seen: Vec<PathBuf> = Vec::new();
         for target in targets {
-            let name = match target {
-                Target::Stdout => PathBuf::from("-"),
-                // Two spellings of one name are one file.
-                Target::File(path) => std::path::absolute(path).unwrap_or_else(|_| path.clone()),
+            let (shown, name) = match target {
+                Target::Stdout => ("standard output".into(), PathBuf::from("-")),
+                Target::File(path) => (path.display().to_string(), identity(path)),
             };
-            let name = name.canonicalize().unwrap_or(name);
+            let refuse = |what| JobError::Option {
+                option: "--output",
+                found: format!("{shown} {what}"),
+                wanted: "every output needs a name of its own".to_owned(),
+            };
             if seen.contains(&name) {
-                return Err(JobError::Option {
-                    option: "--output",
-                    found: format!("{} is given twice", name.display()),
-                    wanted: "every output needs a name of its own".to_owned(),
-                });
+                return Err(refuse("is given twice"));
+            }
+            if let Target::File(path) = target {
+                if inputs.contains(&name) {
+                    return Err(refuse("is an input, which would be overwritten"));
+                }
+                export::check_destination(path)?;
             }
             seen.push(name);
         }
         Ok(())
     }
+}
+
+/// One path for all spellings of a name, whether or not there is such a file.
+fn identity(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| {
+        let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        match (absolute.parent().map(Path::canonicalize), absolute.file_name()) {
+            (Some(Ok(folder)), Some(name)) => folder.join(name),
+            _ => absolute,
+        }
+    })
 }
 
 /// Bytes on their way out: staged beside their destination, or held for standard output.
@@ -123,7 +145,8 @@ impl Pending {
     }
 }
 
-/// Gives all files their names, then writes what goes to standard output.
+/// Writes what goes to standard output, then gives all files their names. A reader of standard output that
+/// has closed the pipe has had enough, which is no failure.
 pub(super) fn persist(pending: Vec<Pending>) -> Result<(), JobError> {
     let mut files = Vec::new();
     let mut streams = Vec::new();
@@ -135,9 +158,12 @@ pub(super) fn persist(pending: Vec<Pending>) -> Result<(), JobError> {
     }
     for bytes in streams {
         let mut out = std::io::stdout().lock();
-        out.write_all(&bytes)
-            .and_then(|()| out.flush())
-            .map_err(|source| JobError::Export(ExportError::Write { path: PathBuf::from("-"), source }))?;
+        match out.write_all(&bytes).and_then(|()| out.flush()) {
+            Err(source) if source.kind() != std::io::ErrorKind::BrokenPipe => {
+                return Err(ExportError::Write { path: "standard output".into(), source }.into());
+            }
+            _ => {}
+        }
     }
     Ok(export::persist_all(files)?)
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::error::JobError;
+use super::error::{JobError, OutlineFault};
 use crate::domain::BandMap;
 use crate::fabricate::snapped_to_f32;
 use crate::fit::Outline;
@@ -26,7 +26,7 @@ pub(super) enum PartError {
     /// It cannot be, whatever the chord error.
     Job(JobError),
     /// Contours touch, or the counts are not as planned: a smaller chord error may help.
-    Untrue { components: usize, holes: usize, place: String },
+    Untrue(OutlineFault),
 }
 
 impl Part {
@@ -52,22 +52,16 @@ impl Part {
             let snapped = snapped.map_err(|e| PartError::Job(JobError::Fabricate(e.into())))?;
             contours.extend(Contour::new(snapped));
         }
-        let untrue = |region: Option<&Region>, place: String| PartError::Untrue {
-            components: region.map_or(0, Region::components),
-            holes: region.map_or(0, Region::holes),
-            place,
-        };
         let region = Region::from_contours(exact, contours).map_err(|error| match error {
             RegionError::Invalid { faults } => {
-                let p = faults[0].position_mm();
-                untrue(None, format!(" (contours meet at ({:.3}, {:.3}) mm on the page)", p.x, p.y))
+                PartError::Untrue(OutlineFault::Contact { position_mm: faults[0].position_mm() })
             }
             RegionError::Grid(e) => PartError::Job(JobError::Fabricate(e.into())),
         })?;
         let region = snapped_to_f32(&region).map_err(|e| PartError::Job(JobError::Fabricate(e)))?;
-        let counts = (region.components(), region.holes());
-        if counts != (planned.components as usize, planned.holes as usize) {
-            return Err(untrue(Some(&region), String::new()));
+        let (components, holes) = (region.components(), region.holes());
+        if (components, holes) != (planned.components as usize, planned.holes as usize) {
+            return Err(PartError::Untrue(OutlineFault::Counts { components, holes }));
         }
         Ok(Self { region, page_mm })
     }

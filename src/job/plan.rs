@@ -68,8 +68,11 @@ const EPSILONS: [f64; 4] = [0.05, 0.1, 0.2, 0.3];
 const MOST_BINS: f64 = 2048.0;
 /// Units of drift in the height of the band.
 const DRIFT_UNITS: f64 = 64.0;
-/// How much a seed may add to the cost of a jump, as a part of λ.
-const SEED_SPREAD: f64 = 0.5;
+/// How much a seed may add to the cost of a jump, as a part of λ. Less, and most seeds give the optimum again;
+/// more, and bands cost more without being more different.
+const SEED_SPREAD: f64 = 1.0;
+/// The λ that this part is taken of when λ is smaller, so that a seed has an effect without λ too.
+const LEAST_SEEDED_JUMP: f64 = 0.1;
 /// The most labels of a search: about 1.5 GiB.
 const LABEL_LIMIT: usize = 800_000;
 
@@ -127,6 +130,7 @@ fn problem<'a>(catalogue: &'a Catalogue, options: &PlanOptions, bin_mm: f64) -> 
     let bins = |mm: f64| (mm / bin_mm).round() as u32;
     let widths = pieces.iter().map(|p| (bins(p.x_mm + p.width_mm) - bins(p.x_mm)).max(1)).collect();
     let unit_mm = options.height_mm / DRIFT_UNITS;
+    let seed_spread = SEED_SPREAD * options.weights.jump.max(LEAST_SEEDED_JUMP);
     let steps = catalogue
         .joins()
         .iter()
@@ -135,7 +139,7 @@ fn problem<'a>(catalogue: &'a Catalogue, options: &PlanOptions, bin_mm: f64) -> 
             joins
                 .iter()
                 .map(|join| {
-                    let spread = if join.is_natural { 0.0 } else { SEED_SPREAD * options.weights.jump };
+                    let spread = if join.is_natural { 0.0 } else { seed_spread };
                     let extra = options.seed.map_or(0.0, |seed| spread * noise(seed, from, join.to));
                     let rise = (join.rise_mm / unit_mm).round() as i32;
                     Step { to: join.to, cost: micro(join.cost + extra), rise }

@@ -1,0 +1,62 @@
+//! The same input and seed give the same bytes, whatever the number of threads.
+
+#[allow(dead_code, reason = "each test crate uses a part of it")]
+mod common;
+
+use common::{Finished, Room};
+use serde_json::Value;
+
+/// Three ways of using the search and the geometry: a ring, an open path with jumps, a band with variety.
+const JOBS: [&str; 3] = [
+    "band vine.svg --along circle:65mm --width 14mm --components 1 --closed-pattern --seed 7",
+    "band leaves.svg --along path:curve.svg --width 9mm --seed 3",
+    "band wave.svg --along line:60mm --width 10mm --components 1 --variety 0.5",
+];
+
+/// Every file that a job writes, and its report without the times.
+fn results(room: &Room, job: &str, threads: &str) -> (Vec<Vec<u8>>, Value) {
+    let outputs = ["out.svg", "out.stl", "out.png"];
+    let named: String = outputs.iter().map(|name| format!(" -o {name}")).collect();
+    let arguments = format!("{job} {named} --report out.json");
+    let finished = Finished::of(room.command(&arguments).env("RAYON_NUM_THREADS", threads));
+    assert_eq!(finished.code, 0, "{job}: {}", finished.stderr);
+    let mut report = room.json("out.json");
+    report.as_object_mut().unwrap().remove("times");
+    (outputs.iter().map(|name| room.read(name)).collect(), report)
+}
+
+#[test]
+fn one_thread_two_threads_and_again() {
+    let room = Room::with(&["vine.svg", "leaves.svg", "wave.svg"]);
+    room.draw("curve.svg", "<path d='M5 40 C40 -10 80 70 115 20' fill='none' stroke='black'/>");
+    for job in JOBS {
+        let first = results(&room, job, "1");
+        for threads in ["1", "2"] {
+            let again = results(&room, job, threads);
+            let same: Vec<bool> = first.0.iter().zip(&again.0).map(|(a, b)| a == b).collect();
+            assert_eq!(same, [true; 3], "SVG, STL and PNG of {job} on {threads} thread(s)");
+            assert_eq!(first.1, again.1, "the report of {job} on {threads} thread(s)");
+        }
+    }
+}
+
+#[test]
+fn seeds_differ_and_none_is_better_than_the_optimum() {
+    let room = Room::with(&["vine.svg"]);
+    for curve in ["--along line:240mm --width 20mm --components 1", "--along circle:65mm --width 14mm"] {
+        let band = |seed: &str| {
+            room.succeeds(&format!("band vine.svg {curve} {seed} -o out.svg --report out.json"));
+            let report = room.json("out.json");
+            (report["sequence"].clone(), report["cost"].as_f64().unwrap(), report["optimal"].clone())
+        };
+        let (_, least, optimal) = band("");
+        assert_eq!(optimal, true);
+        let seeded: Vec<_> = (1..=4).map(|seed| band(&format!("--seed {seed}"))).collect();
+        for (_, cost, optimal) in &seeded {
+            assert!(*cost >= least && optimal.is_null(), "{cost} is less than the optimum {least}");
+        }
+        let is_new = |i: usize| seeded[..i].iter().all(|(sequence, ..)| *sequence != seeded[i].0);
+        let different = (0..seeded.len()).filter(|&i| is_new(i)).count();
+        assert!(different >= 3, "four seeds gave {different} band(s): {curve}");
+    }
+}
