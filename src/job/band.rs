@@ -22,6 +22,7 @@ use crate::fit::{FitOptions, Outline};
 use crate::pieces::Catalogue;
 use crate::planar::Region;
 use crate::reeb::{ReebGraph, Slicing, SlicingRule};
+use crate::solver::autocorrelation;
 use crate::topology::{Shape, Topology};
 use crate::verify::{self, Expected, Mismatch, Narrowest, SvgReport};
 
@@ -397,6 +398,7 @@ fn describe(
         cost: plan.cost,
         optimal: plan.gap.map(|gap| gap == 0.0),
         cost_gap: plan.gap,
+        autocorrelation: job.variety.map(|_| autocorrelation(&plan.sequence)),
         successors: options.weights.successors,
         epsilon: plan.epsilon,
         length_error_mm: length_mm / outline.stretch - length_mm,

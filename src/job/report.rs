@@ -83,6 +83,8 @@ pub struct BandReport {
     pub optimal: Option<bool>,
     /// How much less another sequence could cost at most.
     pub cost_gap: Option<f64>,
+    /// The autocorrelation of the sequence (Zhou 2014 §3.7), when variety was asked for.
+    pub autocorrelation: Option<f64>,
     /// How many successors of each piece were considered.
     pub successors: usize,
     /// The part of the length by which sequences were allowed to miss it before stretching.

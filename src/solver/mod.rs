@@ -21,7 +21,7 @@ mod variety;
 
 pub use explain::{Refusal, explain};
 pub use problem::{Cost, Problem, Solution, Step, Unsolved};
-pub use variety::Variety;
+pub use variety::{Variety, autocorrelation};
 
 use crate::topology::{Automaton, Goal, Shape};
 
