@@ -19,18 +19,18 @@ impl Monotone {
         let ys: Vec<f64> = points.iter().map(|p| p.1).collect();
         let secants: Vec<f64> = points.windows(2).map(|w| (w[1].1 - w[0].1) / (w[1].0 - w[0].0)).collect();
         let n = points.len();
-        let mut slopes = vec![outside; n];
-        for k in 0..n {
+        let slope = |k: usize| {
             let before = k.checked_sub(1).map(|i| secants[i]);
             let after = secants.get(k).copied();
-            slopes[k] = match (before, after) {
+            match (before, after) {
                 (Some(a), Some(b)) => harmonic(a, b),
                 // At the ends the slope outside, as far as it does not overshoot.
                 (Some(s), None) | (None, Some(s)) if s > 0.0 => outside.min(2.7 * s),
                 (Some(_), None) | (None, Some(_)) => 0.0,
                 (None, None) => outside,
-            };
-        }
+            }
+        };
+        let slopes = (0..n).map(slope).collect();
         Self { xs, ys, slopes, outside }
     }
 

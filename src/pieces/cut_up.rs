@@ -95,10 +95,8 @@ impl Walk<'_> {
         for step in 0..=n {
             let i = (first + step) % n;
             let j = (i + 1) % n;
-            if step > 0 {
-                if let Some((_, open)) = &mut chain {
-                    open.push(self.local(self.grid.to_mm(points[i]), homes[i]));
-                }
+            if let (1.., Some((_, open))) = (step, &mut chain) {
+                open.push(self.local(self.grid.to_mm(points[i]), homes[i]));
             }
             let mut home = homes[i];
             while home != homes[j] {
