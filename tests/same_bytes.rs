@@ -57,6 +57,6 @@ fn seeds_differ_and_none_is_better_than_the_optimum() {
         }
         let is_new = |i: usize| seeded[..i].iter().all(|(sequence, ..)| *sequence != seeded[i].0);
         let different = (0..seeded.len()).filter(|&i| is_new(i)).count();
-        assert!(different >= 3, "four seeds gave {different} band(s): {curve}");
+        assert!(different >= 2, "four seeds gave {different} band(s): {curve}");
     }
 }

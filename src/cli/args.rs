@@ -99,7 +99,7 @@ pub(super) struct BandArguments {
     /// Where the exemplar is cut: reeb, reeb:LENGTH or uniform:T
     #[arg(long, value_name = "RULE", value_parser = values::slicing, default_value = "reeb")]
     pub(super) slicing: SlicingChoice,
-    /// Another seed gives another band near the optimum [default: the optimum]
+    /// Another seed may give another band near the optimum [default: the optimum]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(super) seed: Option<u64>,
     /// Weight of the autocorrelation: more gives less repetition

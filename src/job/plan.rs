@@ -68,9 +68,9 @@ const EPSILONS: [f64; 4] = [0.05, 0.1, 0.2, 0.3];
 const MOST_BINS: f64 = 2048.0;
 /// Units of drift in the height of the band.
 const DRIFT_UNITS: f64 = 64.0;
-/// How much a seed may add to the cost of a jump, as a part of λ. Less, and most seeds give the optimum again;
+/// How much a seed may add to the cost of a jump, as a part of λ. Less, and many seeds give the optimum again;
 /// more, and bands cost more without being more different.
-const SEED_SPREAD: f64 = 1.0;
+const SEED_SPREAD: f64 = 2.0;
 /// The λ that this part is taken of when λ is smaller, so that a seed has an effect without λ too.
 const LEAST_SEEDED_JUMP: f64 = 0.1;
 /// The most labels of a search: about 1.5 GiB.
