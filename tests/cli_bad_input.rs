@@ -155,8 +155,8 @@ fn a_number_out_of_range() {
     let refuses = |option: &str, words: &[&str]| {
         room.refuses(&format!("band vine.svg --along line:120mm -o out.svg {option}"), 2, words);
     };
-    refuses("--width 0", &["--width", "0 is out of range", "from 0.1 to 10000 mm"]);
-    refuses("--width -3mm", &["--width", "-3 is out of range", "from 0.1 to 10000 mm"]);
+    refuses("--width 0", &["--width", "0 is out of range", "from 0.5 to 10000 mm"]);
+    refuses("--width -3mm", &["--width", "-3 is out of range", "from 0.5 to 10000 mm"]);
     refuses("--width NaN", &["--width", "'NaN' is not a length", "120mm"]);
     refuses("--width inf", &["--width", "'inf' is not a length"]);
     refuses("--width 3furlong", &["--width", "'furlong'", "mm, cm, in, pt, px"]);

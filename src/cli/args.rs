@@ -69,7 +69,8 @@ was written; 1 a bug of ours.";
 
 const VERIFY_HELP: &str = "\
 Lengths take mm, cm, in, pt or px (96 to the inch); a bare number is millimetres.
-Exit code 4 when the file is not as asked for, 2 when it cannot be read.
+Exit code 4 when the file is not as asked for, 2 when it cannot be read. Faults that leave the counts as they are
+(elements that overlap, contours that touch) are listed and do not change the exit code.
 
 Examples:
   One piece that a nozzle of 0.5 mm can print:

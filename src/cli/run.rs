@@ -165,7 +165,7 @@ fn run_analyze(arguments: &AnalyzeArguments) -> Result<ExitCode, CliError> {
     if let Some(stl) = outputs.iter().find(|o| o.format() == Format::Stl) {
         return Err(CliError::Job(JobError::Option {
             option: "--output",
-            found: format!("{:?} is a solid", stl.target()),
+            found: format!("{} is a solid", stl.target()),
             wanted: "an overlay is a picture: end the name in .svg or .png".to_owned(),
         }));
     }
@@ -262,9 +262,16 @@ fn run_verify(arguments: &VerifyArguments) -> Result<ExitCode, CliError> {
     let extension = arguments.file.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
     let checked = match extension.as_str() {
         "svg" => {
-            let report = verify::read_svg(&bytes, tolerances.chord_mm()).map_err(unjudged)?;
+            let report = verify::read_svg(&bytes, tolerances.chord_mm() / 4.0).map_err(unjudged)?;
             print_report(arguments.json, &report)?;
             report.check(&expected)
+        }
+        "stl" if expected.min_feature_mm > 0.0 || expected.min_gap_mm > 0.0 => {
+            return Err(CliError::Job(JobError::Option {
+                option: "--min-feature",
+                found: "widths are measured on drawings, not on solids".to_owned(),
+                wanted: "check the SVG of the same part, or leave out --min-feature and --min-gap".to_owned(),
+            }));
         }
         "stl" => {
             let report = verify::read_stl(&bytes).map_err(unjudged)?;

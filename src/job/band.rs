@@ -31,6 +31,8 @@ const READ_SHARE: f64 = 0.25;
 const FIT_SHARE: f64 = 0.125;
 const MAP_SHARE: f64 = 0.125;
 const SVG_SHARE: f64 = 0.5;
+/// Ink thinner than this is worth a warning, in millimetres: about the width of a laser's cut.
+const HAIRLINE_MM: f64 = 0.1;
 /// When the counts are not as planned, chords cut through a gap or a strand: smaller ones are tried.
 const CHORD_TRIES: [f64; 4] = [1.0, 0.25, 0.06, 0.015];
 
@@ -171,6 +173,12 @@ impl Band {
                 }
             };
             pending.push(item);
+        }
+        if let Some(narrowest) = found.min_feature.filter(|n| n.width_mm < HAIRLINE_MM) {
+            report.notes.push(format!(
+                "ink only {:.3} mm wide holds the band together, which hardly any machine makes; a larger --width makes it wider in proportion",
+                narrowest.width_mm
+            ));
         }
         report.components = found.components;
         report.holes = found.holes;
@@ -358,6 +366,12 @@ fn describe(
             "no sequence came within 5 % of the length; within {:.0} % one did, and it is stretched by {:.1} %",
             plan.epsilon * 100.0,
             (outline.stretch - 1.0) * 100.0
+        ));
+    }
+    if plan.epsilon <= 0.05 && (outline.stretch - 1.0).abs() > 0.05 {
+        notes.push(format!(
+            "the pieces are so narrow against the length that it was met only within {:.1} %, by stretching",
+            (outline.stretch - 1.0).abs() * 100.0
         ));
     }
     if outline.squash < 0.99 {

@@ -157,7 +157,7 @@ impl BandBuilder {
         self.weights.validate()?;
         let tolerances = Tolerances::new(self.chord_mm, self.min_feature_mm, self.min_gap_mm)?;
         if let Some(width) = self.width_mm {
-            in_range("--width", width, 0.1, 10_000.0)?;
+            in_range("--width", width, 0.5, 10_000.0)?;
         }
         in_range("--thickness", self.thickness_mm, 0.001, 10_000.0)?;
         if !(0.0..=1e6).contains(&self.beta) {

@@ -26,6 +26,15 @@ pub enum Target {
     Stdout,
 }
 
+impl std::fmt::Display for Target {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::File(path) => path.display().fmt(f),
+            Self::Stdout => f.write_str("standard output"),
+        }
+    }
+}
+
 /// One output of a job.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Output {

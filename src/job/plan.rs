@@ -64,8 +64,11 @@ pub enum PlanError {
 /// The first ε is the paper's (Zhou 2014 §3.5); it is widened until a sequence is found. Beyond the last, the
 /// stretching would show.
 const EPSILONS: [f64; 4] = [0.05, 0.1, 0.2, 0.3];
-/// A bin is at least this part of L. Finer bins cost time and gain a stretch of a fraction of a percent.
-const MOST_BINS: f64 = 2048.0;
+/// A bin as a part of the narrowest piece. Larger, and rounding to whole bins, at least one, would lengthen the
+/// narrow pieces and with them the band; smaller, and the search takes longer for a length no truer.
+const BIN: f64 = 0.75;
+/// The most bins in a band: beyond, bins grow and lengths are less true, which the report shows.
+const MOST_BINS: f64 = 400_000.0;
 /// Units of drift in the height of the band.
 const DRIFT_UNITS: f64 = 64.0;
 /// How much a seed may add to the cost of a jump, as a part of λ. Less, and many seeds give the optimum again;
@@ -75,6 +78,9 @@ const SEED_SPREAD: f64 = 2.0;
 const LEAST_SEEDED_JUMP: f64 = 0.1;
 /// The most labels of a search: about 1.5 GiB.
 const LABEL_LIMIT: usize = 800_000;
+
+/// The same with variety, where each label carries the correlations of its whole run.
+const VARIETY_LABEL_LIMIT: usize = 20_000;
 
 /// The best sequence of `catalogue` for `options`.
 ///
@@ -113,7 +119,7 @@ fn finish(catalogue: &Catalogue, options: &PlanOptions, solution: Solution, epsi
 
 fn bin_mm(catalogue: &Catalogue, length_mm: f64) -> f64 {
     let narrowest = catalogue.pieces().iter().map(|p| p.width_mm).fold(f64::INFINITY, f64::min);
-    (narrowest / 2.0).max(length_mm / MOST_BINS)
+    (narrowest * BIN).max(length_mm / MOST_BINS)
 }
 
 fn window(length_mm: f64, epsilon: f64, bin_mm: f64) -> std::ops::RangeInclusive<u32> {
@@ -163,7 +169,7 @@ fn problem<'a>(catalogue: &'a Catalogue, options: &PlanOptions, bin_mm: f64) -> 
         window: 0..=0,
         drift_limit: (DRIFT_UNITS / 2.0) as i32,
         variety: options.variety,
-        label_limit: LABEL_LIMIT,
+        label_limit: if options.variety.is_some() { VARIETY_LABEL_LIMIT } else { LABEL_LIMIT },
     }
 }
 
