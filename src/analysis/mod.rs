@@ -175,7 +175,7 @@ impl Analysis {
         let (low, high) = region.bounds_mm().unwrap_or_default();
         let rule = rule.unwrap_or_else(|| SlicingRule::reeb_for_width(high.x - low.x));
         let reeb = ReebGraph::new(region);
-        let Slicing { cuts, dropped } = Slicing::new(region, &reeb, rule, tolerances)?;
+        let Slicing { cuts, dropped, .. } = Slicing::new(region, &reeb, rule, tolerances)?;
         let catalogue = Catalogue::new(region, &cuts, weights);
         let slicing = match rule {
             SlicingRule::Reeb { persistence_mm } => SlicingUsed::Reeb { persistence_mm },

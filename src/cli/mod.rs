@@ -34,9 +34,14 @@ pub fn main() -> ExitCode {
         crate::export::remove_staged();
         std::process::exit(INTERRUPTED);
     });
-    match run::run(arguments) {
-        Ok(code) => code,
-        Err(error) => {
+    // A panic has said where it happened; the exit code says that it is ours.
+    match std::panic::catch_unwind(|| run::run(arguments)) {
+        Err(_) => {
+            eprintln!("error: this is a bug in Openwork; please report it with the command and the files");
+            ExitCode::FAILURE
+        }
+        Ok(Ok(code)) => code,
+        Ok(Err(error)) => {
             say!("error: {error}");
             ExitCode::from(error.exit_code())
         }

@@ -38,7 +38,7 @@ const SHARE: f64 = 0.7;
 const BUMP_MAX: f64 = 4.0 / 27.0;
 /// The tangent term reaches at most this part of the piece, so that both sides' terms never meet.
 const MAX_REACH: f64 = 0.5;
-/// Beyond the outermost endpoints the change of slope fades out over this many times the reach.
+/// Beyond the outermost endpoints the change of slope fades out over this many times the greatest reach.
 const FADE: f64 = 1.0;
 
 /// The warp of one piece.
@@ -118,19 +118,11 @@ impl Side {
         if changes.iter().all(|c| c.1.abs() < 1e-9) {
             return Self { heights, slopes: Monotone::new(&[], 0.0), reach_mm: 0.0 };
         }
-        // The fade depends on the reach and the reach on the steepness of the fade: the shorter, the steeper,
-        // but their product settles.
-        let mut reach_mm = most_reach;
-        let mut slopes = faded(&changes, reach_mm);
-        for _ in 0..40 {
-            let (low, high) = slopes.slope_range();
-            if BUMP_MAX * reach_mm * low.abs().max(high.abs()) <= SHARE * least {
-                return Self { heights, slopes, reach_mm };
-            }
-            reach_mm *= 0.8;
-            slopes = faded(&changes, most_reach);
-        }
-        Self { heights, slopes: Monotone::new(&[], 0.0), reach_mm: 0.0 }
+        let slopes = faded(&changes, FADE * most_reach);
+        let (low, high) = slopes.slope_range();
+        let steepest = low.abs().max(high.abs());
+        let reach_mm = most_reach.min(SHARE * least / (BUMP_MAX * steepest));
+        Self { heights, slopes, reach_mm }
     }
 
     /// a(x)·c(y) at a distance from this side, for slopes that are measured away from it.
@@ -144,9 +136,8 @@ impl Side {
 }
 
 /// The changes of slope with points added beyond the ends where they have faded to nothing.
-fn faded(changes: &[(f64, f64)], reach_mm: f64) -> Monotone {
+fn faded(changes: &[(f64, f64)], fade: f64) -> Monotone {
     let (first, last) = (changes[0].0, changes[changes.len() - 1].0);
-    let fade = FADE * reach_mm;
     let mut points = vec![(first - fade, 0.0)];
     points.extend_from_slice(changes);
     points.push((last + fade, 0.0));

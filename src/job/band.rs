@@ -19,7 +19,7 @@ use crate::exemplar::{Exemplar, Limits, ReadOptions, read_path};
 use crate::export::{self, SvgDocument, SvgOptions};
 use crate::fabricate;
 use crate::fit::{FitOptions, Outline};
-use crate::pieces::Catalogue;
+use crate::pieces::{Catalogue, CostWeights};
 use crate::planar::Region;
 use crate::reeb::{ReebGraph, Slicing, SlicingRule};
 use crate::solver::autocorrelation;
@@ -49,10 +49,26 @@ pub struct Band {
 /// An exemplar cut into pieces.
 struct Cut {
     exemplar: Exemplar,
+    region: Region,
+    slicing: Slicing,
     catalogue: Catalogue,
+    weights: CostWeights,
     height_mm: f64,
     /// Parts and holes that are too small to be told from nothing at the chord error.
     specks: Vec<DVec2>,
+}
+
+impl Cut {
+    /// Weighs every join instead of the cheapest few; `false` if that changes nothing.
+    fn admit_all_successors(&mut self) -> bool {
+        let pieces = self.catalogue.pieces().len();
+        if self.weights.successors >= pieces {
+            return false;
+        }
+        self.weights.successors = pieces;
+        self.catalogue = Catalogue::new(&self.region, &self.slicing.cuts, &self.weights);
+        true
+    }
 }
 
 impl Band {
@@ -70,7 +86,7 @@ impl Band {
                 wanted: "a pattern can close only along a closed curve, as circle:65mm".to_owned(),
             });
         }
-        let cut = clock.time(Stage::Slice, || slice(job, exemplar))?;
+        let mut cut = clock.time(Stage::Slice, || slice(job, exemplar))?;
         let half = cut.height_mm / 2.0;
         // Where the band cannot lie is found before the search, not after it.
         let map = clock.time(Stage::Map, || BandMap::new(curve, -half, half))?;
@@ -85,15 +101,17 @@ impl Band {
             seed: options.seed,
             variety: job.variety,
         };
-        let plan =
-            clock.time(Stage::Solve, || plan(&cut.catalogue, &plan_options)).map_err(
-                |error| match error {
-                    PlanError::TooLarge { labels } => JobError::SearchTooLarge { labels },
-                    PlanError::Refused { refusal, bin_mm } => {
-                        JobError::Refused(refusal::message(&cut.catalogue, &plan_options, &refusal, bin_mm))
-                    }
-                },
-            )?;
+        let mut planned = clock.time(Stage::Solve, || plan(&cut.catalogue, &plan_options));
+        if matches!(planned, Err(PlanError::Refused { .. })) && cut.admit_all_successors() {
+            // Nothing is refused for a join that was not in the table.
+            planned = clock.time(Stage::Solve, || plan(&cut.catalogue, &plan_options));
+        }
+        let plan = planned.map_err(|error| match error {
+            PlanError::TooLarge { labels } => JobError::SearchTooLarge { labels },
+            PlanError::Refused { refusal, bin_mm } => {
+                JobError::Refused(refusal::message(&cut.catalogue, &plan_options, &refusal, bin_mm))
+            }
+        })?;
         let planned = topology_of(&cut.catalogue, &plan.sequence, plan_options.shape);
         let (part, outline) = make_part(job, &cut, &plan, &map, planned, &mut clock)?;
         let report = describe(job, &cut, &plan, planned, &map, &outline, &part, curve_input, clock.times);
@@ -147,12 +165,10 @@ impl Band {
                 Format::Svg => {
                     report.svg_segments = Some([drawing.lines, drawing.cubics]);
                     let item = Pending::new(output.target(), drawing.text.clone().into_bytes())?;
-                    let same = clock.time(Stage::Verify, || item.read_again())? == drawing.text.as_bytes();
-                    if !same {
-                        let again = self.read_svg(&item.read_again()?)?;
-                        again
-                            .check(&expected)
-                            .map_err(|m| self.mismatch(name(output.target()), m, &again))?;
+                    if clock.time(Stage::Verify, || item.read_again())? != drawing.text.as_bytes() {
+                        let source = std::io::Error::other("the file differs from what was written to it");
+                        let path = name(output.target());
+                        return Err(JobError::Export(export::ExportError::Write { path, source }));
                     }
                     item
                 }
@@ -279,6 +295,13 @@ fn slice(job: &BandJob, exemplar: Exemplar) -> Result<Cut, JobError> {
     let speck_mm2 = job.tolerances.chord_mm().powi(2);
     let (region, specks) = exemplar.region().without_specks(speck_mm2);
     let region = &region;
+    if region.is_empty() {
+        return Err(JobError::Option {
+            option: "--chord",
+            found: format!("at {} mm all ink is no more than specks", job.tolerances.chord_mm()),
+            wanted: "use a smaller --chord, or a larger --width".to_owned(),
+        });
+    }
     let (low, high) = region.bounds_mm().unwrap_or_default();
     let rule = match job.options.slicing {
         SlicingChoice::Reeb => SlicingRule::reeb_for_width(high.x - low.x),
@@ -286,8 +309,10 @@ fn slice(job: &BandJob, exemplar: Exemplar) -> Result<Cut, JobError> {
         SlicingChoice::Uniform(lines) => SlicingRule::Uniform { lines },
     };
     let slicing = Slicing::new(region, &ReebGraph::new(region), rule, &job.tolerances)?;
-    let catalogue = Catalogue::new(region, &slicing.cuts, &job.options.weights);
-    Ok(Cut { catalogue, height_mm: high.y - low.y, exemplar, specks })
+    let weights = job.options.weights;
+    let catalogue = Catalogue::new(region, &slicing.cuts, &weights);
+    let (region, height_mm) = (region.clone(), high.y - low.y);
+    Ok(Cut { region, slicing, catalogue, weights, height_mm, exemplar, specks })
 }
 
 /// The topology of a sequence by joining all descriptors, independently of the automaton that led the search.
@@ -361,6 +386,18 @@ fn describe(
             first.y
         ));
     }
+    if !cut.slicing.dropped.is_empty() {
+        notes.push(format!(
+            "{} cut(s) were left out, as they pass through ink thinner than --min-feature",
+            cut.slicing.dropped.len()
+        ));
+    }
+    if let (SlicingChoice::Uniform(lines), 1..) = (options.slicing, cut.slicing.missed) {
+        notes.push(format!(
+            "{} of the {lines} cuts were left out, as contours run along them or nearly touch there",
+            cut.slicing.missed
+        ));
+    }
     if plan.epsilon > 0.05 {
         notes.push(format!(
             "no sequence came within 5 % of the length; within {:.0} % one did, and it is stretched by {:.1} %",
@@ -413,7 +450,7 @@ fn describe(
         optimal: plan.gap.map(|gap| gap == 0.0),
         cost_gap: plan.gap,
         autocorrelation: job.variety.map(|_| autocorrelation(&plan.sequence)),
-        successors: options.weights.successors,
+        successors: cut.weights.successors,
         epsilon: plan.epsilon,
         length_error_mm: length_mm / outline.stretch - length_mm,
         squash: outline.squash,

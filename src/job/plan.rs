@@ -63,7 +63,7 @@ pub enum PlanError {
 
 /// The first ε is the paper's (Zhou 2014 §3.5); it is widened until a sequence is found. Beyond the last, the
 /// stretching would show.
-const EPSILONS: [f64; 4] = [0.05, 0.1, 0.2, 0.3];
+pub(super) const EPSILONS: [f64; 4] = [0.05, 0.1, 0.2, 0.3];
 /// A bin as a part of the narrowest piece. Larger, and rounding to whole bins, at least one, would lengthen the
 /// narrow pieces and with them the band; smaller, and the search takes longer for a length no truer.
 const BIN: f64 = 0.75;
@@ -76,7 +76,7 @@ const DRIFT_UNITS: f64 = 64.0;
 const SEED_SPREAD: f64 = 2.0;
 /// The λ that this part is taken of when λ is smaller, so that a seed has an effect without λ too.
 const LEAST_SEEDED_JUMP: f64 = 0.1;
-/// The most labels of a search: about 1.5 GiB.
+/// The most labels of a search: tens of megabytes, and about a second.
 const LABEL_LIMIT: usize = 800_000;
 
 /// The same with variety, where each label carries the correlations of its whole run.
@@ -90,12 +90,19 @@ pub fn plan(catalogue: &Catalogue, options: &PlanOptions) -> Result<Plan, PlanEr
     let bin_mm = bin_mm(catalogue, options.length_mm);
     let mut problem = problem(catalogue, options, bin_mm);
     for epsilon in EPSILONS {
-        problem.window = window(options.length_mm, epsilon, bin_mm);
+        // No whole number of bins may lie so close to a short length.
+        let Some(window) = window(options.length_mm, epsilon, bin_mm) else { continue };
+        problem.window = window;
         match solver::solve(&problem, options.goal) {
             Ok(solution) => return Ok(finish(catalogue, options, solution, epsilon)),
             Err(Unsolved::TooLarge { labels }) => return Err(PlanError::TooLarge { labels }),
             Err(Unsolved::Infeasible) => {}
         }
+    }
+    // A window without a whole number of bins stands for its middle.
+    if *problem.window.end() == 0 {
+        let bins = (options.length_mm / bin_mm).round().max(1.0) as u32;
+        problem.window = bins..=bins;
     }
     let longest = (problem.window.end() * 2).max((catalogue.width_mm() * 2.0 / bin_mm) as u32);
     Err(PlanError::Refused { refusal: solver::explain(&problem, options.goal, longest), bin_mm })
@@ -122,10 +129,10 @@ fn bin_mm(catalogue: &Catalogue, length_mm: f64) -> f64 {
     (narrowest * BIN).max(length_mm / MOST_BINS)
 }
 
-fn window(length_mm: f64, epsilon: f64, bin_mm: f64) -> std::ops::RangeInclusive<u32> {
+fn window(length_mm: f64, epsilon: f64, bin_mm: f64) -> Option<std::ops::RangeInclusive<u32>> {
     let low = (length_mm * (1.0 - epsilon) / bin_mm).ceil();
     let high = (length_mm * (1.0 + epsilon) / bin_mm).floor();
-    low as u32..=(high.max(low) as u32)
+    (low <= high).then_some(low as u32..=high as u32)
 }
 
 fn problem<'a>(catalogue: &'a Catalogue, options: &PlanOptions, bin_mm: f64) -> Problem<'a> {
@@ -134,7 +141,10 @@ fn problem<'a>(catalogue: &'a Catalogue, options: &PlanOptions, bin_mm: f64) -> 
     let micro = |cost: f64| (cost * 1e6).round() as Cost;
     // Both ends of each piece are rounded to bins, so that errors do not add up along the exemplar.
     let bins = |mm: f64| (mm / bin_mm).round() as u32;
-    let widths = pieces.iter().map(|p| (bins(p.x_mm + p.width_mm) - bins(p.x_mm)).max(1)).collect();
+    // A piece that is longer than any run may be is as good as one that just does not fit.
+    let too_long = bins(options.length_mm * 2.0) + 2;
+    let widths =
+        pieces.iter().map(|p| (bins(p.x_mm + p.width_mm) - bins(p.x_mm)).clamp(1, too_long)).collect();
     let unit_mm = options.height_mm / DRIFT_UNITS;
     let seed_spread = SEED_SPREAD * options.weights.jump.max(LEAST_SEEDED_JUMP);
     let steps = catalogue

@@ -4,7 +4,7 @@ use crate::pieces::Catalogue;
 use crate::solver::Refusal;
 use crate::topology::{Goal, Shape};
 
-use super::plan::PlanOptions;
+use super::plan::{EPSILONS, PlanOptions};
 
 /// The message for a refusal.
 pub(super) fn message(
@@ -76,7 +76,8 @@ fn lengths(
         (None, Some(b)) => format!("the shortest that can be made is {}", mm(b)),
     };
     format!(
-        "no sequence of pieces is within 30 % of the curve's {:.1} mm: {can} at this width; change the curve's length, or scale the ornament with --width",
+        "no sequence of pieces is within {:.0} % of the curve's {:.1} mm: {can} at this width; change the curve's length, or scale the ornament with --width",
+        EPSILONS[EPSILONS.len() - 1] * 100.0,
         options.length_mm
     )
 }
@@ -114,9 +115,9 @@ fn component_witness(catalogue: &Catalogue, options: &PlanOptions) -> String {
             "every run of pieces passes an empty cut, where all strands have ended, or a piece that holds an island".to_owned()
         }
         Some(1) => {
-            "in every run some component closes before the end, as its strands end without meeting the others".to_owned()
+            "no run of this length keeps all its strands together to the end".to_owned()
         }
-        _ => "the components that the exemplar's pieces close do not add up to that number".to_owned(),
+        _ => "every run of this length comes to another number".to_owned(),
     }
 }
 
@@ -129,14 +130,14 @@ fn hole_witness(catalogue: &Catalogue, options: &PlanOptions) -> String {
                 "{with_holes} of the {pieces} pieces have holes of their own, and joins of the others close more"
             )
         }
-        Some(0) => "strands that split and merge again close holes in every run".to_owned(),
-        _ => "the holes that the exemplar's pieces close do not add up to that number".to_owned(),
+        Some(0) => "every run of this length has strands that split and merge again".to_owned(),
+        _ => "every run of this length comes to another number".to_owned(),
     }
 }
 
 fn break_witness(catalogue: &Catalogue) -> String {
     if unbroken_run_exists(catalogue, Shape::Ring) {
-        "in every ring the strands end somewhere".to_owned()
+        "in every ring of this length the strands end somewhere".to_owned()
     } else {
         "every ring of pieces passes an empty cut, where all strands have ended".to_owned()
     }

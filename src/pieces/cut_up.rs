@@ -51,12 +51,13 @@ pub(super) fn cut_up(region: &Region, cuts: &[Cut]) -> Vec<Piece> {
         }
     }
     let walk = Walk { grid, cuts, ranks, origin: DVec2::new(0.0, middle_mm), left_mm: &edges };
+    let mut loops = vec![Loops::default(); pieces.len()];
     for (number, contour) in region.contours().enumerate() {
-        walk.contour(number, contour, &mut pieces);
+        walk.contour(number, contour, &mut pieces, &mut loops);
     }
-    for piece in &mut pieces {
+    for (piece, loops) in pieces.iter_mut().zip(loops) {
         piece.chains.sort_by_key(|chain| end_key(chain.start));
-        piece.descriptor = descriptor(piece);
+        piece.descriptor = descriptor(piece, loops);
     }
     pieces
 }
@@ -79,7 +80,7 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    fn contour(&self, number: usize, contour: &Contour, pieces: &mut [Piece]) {
+    fn contour(&self, number: usize, contour: &Contour, pieces: &mut [Piece], loops: &mut [Loops]) {
         let points = contour.points();
         let piece_of = |x: i64| self.cuts.partition_point(|c| c.x < x);
         let homes: Vec<usize> = points.iter().map(|p| piece_of(p.x)).collect();
@@ -88,6 +89,8 @@ impl Walk<'_> {
             let home = homes[0];
             let local = points.iter().map(|&p| self.local(self.grid.to_mm(p), home)).collect();
             pieces[home].loops.push(local);
+            // Exact: the orientation is that of the contour on its grid.
+            loops[home].count(contour.is_counter_clockwise());
             return;
         };
         // Start after an edge that crosses a cut, so that every chain is met whole.
@@ -125,14 +128,25 @@ impl Walk<'_> {
     }
 }
 
-fn signed_area(points: &[DVec2]) -> f64 {
-    let closing = points.last().zip(points.first());
-    let edges = points.windows(2).map(|w| (&w[0], &w[1])).chain(closing);
-    edges.map(|(a, b)| (*a - points[0]).perp_dot(*b - points[0])).sum()
+/// Contours inside a piece.
+#[derive(Debug, Clone, Copy, Default)]
+struct Loops {
+    islands: u32,
+    holes: u32,
+}
+
+impl Loops {
+    fn count(&mut self, is_island: bool) {
+        if is_island {
+            self.islands += 1;
+        } else {
+            self.holes += 1;
+        }
+    }
 }
 
 /// The descriptor of a piece from its chains and loops.
-fn descriptor(piece: &Piece) -> Descriptor {
+fn descriptor(piece: &Piece, Loops { islands, holes }: Loops) -> Descriptor {
     let left = piece.left.len();
     let total = left + piece.right.len();
     let slot = |end: End| match end {
@@ -157,10 +171,8 @@ fn descriptor(piece: &Piece) -> Descriptor {
         (from..to).step_by(2).map(|top| find(&label, top) as u32).collect()
     };
     let open = (0..total).filter(|&a| label[a] == a).count() as i64;
-    let islands = piece.loops.iter().filter(|l| signed_area(l) > 0.0).count();
-    let holes = piece.loops.len() - islands;
-    let euler = open + islands as i64 - holes as i64;
-    Descriptor::new(&of_portals(0, left), &of_portals(left, total), islands as u32, euler)
+    let euler = open + i64::from(islands) - i64::from(holes);
+    Descriptor::new(&of_portals(0, left), &of_portals(left, total), islands, euler)
 }
 
 #[cfg(test)]

@@ -128,6 +128,13 @@ impl Region {
             kept.push(contour);
         }
         given_area += contours.iter().map(Contour::doubled_area).sum::<i128>();
+        // A vertex of one contour on an edge of another splits that edge.
+        let (given, found) = (seen.len(), kept.iter().map(|c| c.points().len()).sum::<usize>());
+        if faults.is_empty() && found > given {
+            let mut met = rustc_hash::FxHashSet::default();
+            let twice = kept.iter().flat_map(|c| c.points()).find(|&&p| !met.insert(p));
+            faults.extend(twice.map(|&p| Fault::Crossing(grid.to_mm(p))));
+        }
         if faults.is_empty() && (kept.len() != contours.len() || given_area != found_area) {
             kept.sort_unstable();
             let odd = contours.iter().find(|c| kept.binary_search(c).is_err()).unwrap_or(&contours[0]);
@@ -325,6 +332,12 @@ mod tests {
             panic!("crossing squares are no region")
         };
         assert!(faults.contains(&Fault::Crossing(DVec2::new(4.0, 3.0))), "{faults:?}");
+        let triangle = path(&[(4.0, 2.0), (6.0, 1.0), (6.0, 3.0)]);
+        let touching = [square(0.0, 0.0, 4.0), triangle].map(|p| Contour::new(p).unwrap());
+        let Err(RegionError::Invalid { faults }) = Region::from_contours(grid(), touching.to_vec()) else {
+            panic!("a vertex on an edge is no region")
+        };
+        assert_eq!(faults, [Fault::Crossing(DVec2::new(4.0, 2.0))]);
         let stray = [square(0.0, 0.0, 4.0), hole(6.0, 0.0, 2.0)].map(|p| Contour::new(p).unwrap());
         let Err(RegionError::Invalid { faults }) = Region::from_contours(grid(), stray.to_vec()) else {
             panic!("a hole outside of ink is no region")

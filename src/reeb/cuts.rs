@@ -83,6 +83,8 @@ pub struct Slicing {
     pub cuts: Vec<Cut>,
     /// Cuts left out as their narrowest portal is thinner than the minimum feature.
     pub dropped: Vec<CutDropped>,
+    /// Places where a cut was wanted and none could be: contours run along it, or nearly touch on it.
+    pub missed: usize,
 }
 
 /// Why an exemplar cannot be sliced.
@@ -112,6 +114,8 @@ pub enum SlicingError {
     },
 }
 
+/// No cut through more strands than this: their partitions could not be told apart in any time.
+const MOST_PORTALS: usize = 4096;
 /// Places tried between two events. More find a slightly better cut; fewer miss the straight part of a curl.
 const CANDIDATES: i64 = 24;
 /// No cut where a contour runs along it more steeply than this (cosine of 78 degrees): a strand that is cut
@@ -137,7 +141,7 @@ impl Slicing {
         tolerances: &Tolerances,
     ) -> Result<Self, SlicingError> {
         let Some((low, high)) = region.bounds_mm() else {
-            return Ok(Self { cuts: Vec::new(), dropped: Vec::new() });
+            return Ok(Self { cuts: Vec::new(), dropped: Vec::new(), missed: 0 });
         };
         let grid = region.grid();
         let sections = CrossSections::new(region);
@@ -158,7 +162,7 @@ impl Slicing {
                 event_intervals(reeb, shortest, grid.steps(LONGEST_PIECE * (high.y - low.y)).max(1))
             }
         };
-        let mut chosen = Self { cuts: Vec::new(), dropped: Vec::new() };
+        let mut chosen = Self { cuts: Vec::new(), dropped: Vec::new(), missed: 0 };
         let separation = SEPARATION * (high.y - low.y);
         let limits = Limits { separation, min_feature_mm: tolerances.min_feature_mm() };
         for best in spread(best_cuts(&sections, &intervals, limits), (left, right), shortest) {
@@ -169,6 +173,8 @@ impl Slicing {
                 chosen.cuts.push(best);
             }
         }
+        chosen.missed = intervals.len() - chosen.cuts.len() - chosen.dropped.len();
+        chosen.leave_out_blank_pieces(&sections);
         match chosen.dropped.iter().max_by(|a, b| a.portal_mm.total_cmp(&b.portal_mm)) {
             Some(widest) if chosen.cuts.is_empty() => Err(SlicingError::TooThin {
                 min_feature_mm: tolerances.min_feature_mm(),
@@ -177,6 +183,22 @@ impl Slicing {
             }),
             _ => Ok(chosen),
         }
+    }
+
+    /// Between two empty cuts with nothing between them there is no ink to make a piece of.
+    fn leave_out_blank_pieces(&mut self, sections: &CrossSections<'_>) {
+        let mut last_empty: Option<i64> = None;
+        self.cuts.retain(|cut| {
+            if !cut.crossings.is_empty() {
+                last_empty = None;
+                return true;
+            }
+            let is_blank = last_empty.is_some_and(|x| !sections.has_vertex_between(x, cut.x));
+            if !is_blank {
+                last_empty = Some(cut.x);
+            }
+            !is_blank
+        });
     }
 }
 
@@ -300,7 +322,8 @@ impl Merit {
         let apart = crossings.windows(2).all(|w| w[0].y_mm - w[1].y_mm > limits.separation);
         let square = crossings.iter().all(|c| c.tangent.x >= LEAST_SQUARENESS);
         let is_thick_enough = cut.narrowest_portal_mm() >= limits.min_feature_mm;
-        (apart && square).then(|| Self { is_thick_enough, score: score(crossings) })
+        (apart && square && cut.portals() <= MOST_PORTALS)
+            .then(|| Self { is_thick_enough, score: score(crossings) })
     }
 
     fn order(&self, other: &Self) -> Ordering {

@@ -64,6 +64,12 @@ impl<'a> CrossSections<'a> {
         (0..=self.vertex_xs.len() as i64).flat_map(|d| [x + d, x - d]).take(4096).find(|&x| is_free(x))
     }
 
+    /// Whether some vertex lies strictly between two abscissas.
+    pub fn has_vertex_between(&self, low: i64, high: i64) -> bool {
+        let next = self.vertex_xs.partition_point(|&x| x <= low);
+        self.vertex_xs.get(next).is_some_and(|&x| x < high)
+    }
+
     /// The crossings at each of `xs`, which ascend and lie on no vertex; each section from top to bottom.
     pub fn at(&self, xs: &[i64]) -> Vec<Vec<Crossing>> {
         let mut active: Vec<Edge> = Vec::new();
