@@ -9,7 +9,7 @@
 
 use glam::DVec2;
 
-use super::outline::{Cubic, Segment};
+use super::outline::{Cubic, Segment, distance_to_edge};
 use super::runs::{Run, THINNING, tangent_between};
 
 /// The part of a tolerance that rounding to decimals may use.
@@ -244,12 +244,6 @@ fn excess_over(cubic: &Cubic, points: &[DVec2], parameters: &[f64], tolerances: 
         here = next;
     }
     worst
-}
-
-fn distance_to_edge(p: DVec2, from: DVec2, to: DVec2) -> f64 {
-    let d = to - from;
-    let t = ((p - from).dot(d) / d.length_squared()).clamp(0.0, 1.0);
-    p.distance(from + d * t)
 }
 
 fn handles_lie_on_chord(cubic: &Cubic, slack: f64) -> bool {

@@ -8,6 +8,7 @@
 //! and have its components and holes; an STL has the solid's coordinates unrounded; the same input gives the
 //! same bytes. Excluded: standard output, and how shapes came to be.
 
+mod clearance;
 mod curves;
 mod outline;
 mod png;

@@ -26,24 +26,6 @@ pub(super) struct Outline {
     pub(super) segments: Vec<Segment>,
 }
 
-impl Outline {
-    /// Points along the outline, at most `tolerance_mm` from it by their chords; the start comes once.
-    pub(super) fn flattened(&self, tolerance_mm: f64) -> Vec<DVec2> {
-        let mut points = Vec::with_capacity(4 * self.segments.len());
-        let mut from = self.start;
-        for segment in &self.segments {
-            points.push(from);
-            if let Segment::Cubic(a, b, end) = *segment {
-                let cubic = Cubic([from, a, b, end]);
-                let pieces = cubic.pieces_within(tolerance_mm);
-                points.extend((1..pieces).map(|i| cubic.at(i as f64 / pieces as f64)));
-            }
-            from = segment.end();
-        }
-        points
-    }
-}
-
 /// A cubic Bézier by its control points.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cubic(pub(super) [DVec2; 4]);
@@ -69,10 +51,17 @@ impl Cubic {
     }
 
     /// How many equal steps of t keep the chords within `tolerance_mm`.
-    fn pieces_within(&self, tolerance_mm: f64) -> usize {
+    pub(super) fn pieces_within(&self, tolerance_mm: f64) -> usize {
         let bend = self.acceleration(0.0).length().max(self.acceleration(1.0).length());
         ((bend / (8.0 * tolerance_mm)).sqrt().ceil() as usize).max(1)
     }
+}
+
+/// The distance of `p` from the line from `from` to `to`, which may be a point.
+pub(super) fn distance_to_edge(p: DVec2, from: DVec2, to: DVec2) -> f64 {
+    let d = to - from;
+    let t = ((p - from).dot(d) / d.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+    p.distance(from + d * t)
 }
 
 #[cfg(test)]
@@ -82,16 +71,12 @@ mod tests {
     #[test]
     fn flattening_keeps_the_tolerance() {
         let cubic = Cubic([(0.0, 0.0), (0.0, 8.0), (9.0, 8.0), (9.0, -3.0)].map(DVec2::from));
-        let [start, a, b, end] = cubic.0;
-        let outline = Outline { start, segments: vec![Segment::Cubic(a, b, end), Segment::Line(start)] };
-        let points = outline.flattened(0.01);
-        assert!((20..60).contains(&points.len()), "{}", points.len());
+        let n = cubic.pieces_within(0.01);
+        assert!((20..60).contains(&n), "{n}");
+        let points: Vec<DVec2> = (0..=n).map(|i| cubic.at(i as f64 / n as f64)).collect();
         for i in 0..1000 {
             let p = cubic.at(f64::from(i) / 999.0);
-            let near = points.windows(2).map(|w| {
-                let d = w[1] - w[0];
-                (p - w[0] - d * ((p - w[0]).dot(d) / d.length_squared()).clamp(0.0, 1.0)).length()
-            });
+            let near = points.windows(2).map(|w| distance_to_edge(p, w[0], w[1]));
             assert!(near.fold(f64::INFINITY, f64::min) <= 0.01);
         }
     }

@@ -1,28 +1,32 @@
 //! The SVG writer: a region as compound paths of fitted curves, one for each component.
 //!
 //! Every contour is fitted by itself and stays within the chord tolerance of its polygon, but two contours
-//! that pass each other more closely than that may still cross. So the outlines are flattened finely, as
-//! they will stand in the file, and checked as a region; where they fault, the tolerance of the polygon's
-//! edges nearby is divided, down to the exact edges. The file therefore has the region's components and
-//! holes. Excluded: strokes, transforms, colours, text, and where on the page the ornament is put.
+//! that pass each other more closely than that may still cross. So the outlines are checked as they will
+//! stand in the file, rounded: as curves they must keep clear of each other, and flattened they must be a
+//! region. Where they fault, the tolerance of the polygon's edges nearby is divided, down to the exact edges.
+//! The file therefore has the region's components and holes, for every reader that flattens as finely as the
+//! check; specks stand in it point by point, for coarser readers too. Excluded: strokes, transforms, colours, text, and where on the page the ornament is put.
 
 use std::fmt::Write;
 
 use glam::DVec2;
 
 use super::ExportError;
+use super::clearance::{Piece, pieces, unclear};
 use super::curves::{Rounding, fitted};
 use super::outline::{Outline, Segment};
 use super::runs::Polygon;
 use crate::planar::{Contour, EdgeIndex, Region, RegionError};
 
-/// How finely outlines are flattened for the check, as a part of the tolerance. At an eighth, one random
-/// drawing in a hundred hid a crossing between the chords; smaller, and the check takes ever longer.
+/// How finely outlines are flattened for the check, as a part of the tolerance. Larger, and curves that pass
+/// each other closely, but well, become lines; smaller, and fewer readers flatten as finely.
 const CHECK_FLATTENING: f64 = 0.03;
 /// What a fault does to the tolerance of the edges nearby.
 const TIGHTENING: f64 = 0.25;
 /// A tolerance below this part of the chord becomes zero, which keeps the edges themselves.
 const EXACT_BELOW: f64 = 1e-3;
+/// Contours of less area than so many squares of the chord are specks, of which curves could leave nothing.
+const SPECK: f64 = 4.0;
 /// Rounds of tightening before all edges are kept: each round finds at least one fault in each contour.
 const MAX_ROUNDS: usize = 60;
 
@@ -129,9 +133,12 @@ fn outlines(region: &Region, chord_mm: f64, rounding: Rounding) -> Vec<Outline> 
     let grid = region.grid();
     let mut polygons: Vec<Polygon> = region
         .contours()
-        .map(|c| Polygon {
-            points: c.points().iter().map(|&p| grid.to_mm(p)).collect(),
-            tolerances: vec![chord_mm; c.points().len()],
+        .map(|c| {
+            let speck = c.area_mm2(grid).abs() < SPECK * chord_mm * chord_mm;
+            Polygon {
+                points: c.points().iter().map(|&p| grid.to_mm(p)).collect(),
+                tolerances: vec![if speck { 0.0 } else { chord_mm }; c.points().len()],
+            }
         })
         .collect();
     let fit = |polygon: &Polygon| {
@@ -176,15 +183,19 @@ fn outlines(region: &Region, chord_mm: f64, rounding: Rounding) -> Vec<Outline> 
 /// Where the outlines are not a region of the same components and holes.
 fn faults(region: &Region, outlines: &[Outline], chord_mm: f64) -> Vec<DVec2> {
     let grid = region.grid();
+    let flattened: Vec<_> = outlines.iter().map(|o| pieces(o, CHECK_FLATTENING * chord_mm)).collect();
+    let mut faults = unclear(&flattened, chord_mm);
     let mut contours = Vec::with_capacity(outlines.len());
-    for outline in outlines {
-        let points = outline.flattened(CHECK_FLATTENING * chord_mm);
+    for pieces in &flattened {
         // Points beyond the grid's extent, and contours that lost their area, are faults like a crossing.
-        let snapped: Result<Vec<_>, _> = points.iter().map(|&p| grid.snap(p)).collect();
+        let snapped: Result<Vec<_>, _> = pieces.iter().map(|p| grid.snap(p.from())).collect();
         match snapped.ok().and_then(Contour::new) {
             Some(contour) => contours.push(contour),
-            None => return vec![outline.start],
+            None => faults.extend(pieces.iter().map(Piece::from)),
         }
+    }
+    if !faults.is_empty() {
+        return faults;
     }
     match Region::from_contours(grid, contours) {
         Ok(found) if (found.components(), found.holes()) == (region.components(), region.holes()) => {
@@ -280,12 +291,16 @@ mod tests {
 
     /// The file's paths as another library reads them, with y up, flattened finely.
     fn read_back(document: &SvgDocument) -> Region {
+        read_within(document, CHORD / 50.0)
+    }
+
+    fn read_within(document: &SvgDocument, tolerance: f64) -> Region {
         let tree = roxmltree::Document::parse(&document.text).unwrap();
         let grid = Grid::for_extent(60.0).unwrap();
         let mut contours = Vec::new();
         for path in tree.descendants().filter(|n| n.has_tag_name("path")) {
             let curves = kurbo::BezPath::from_svg(path.attribute("d").unwrap()).unwrap();
-            kurbo::flatten(curves, CHORD / 50.0, |element| match element {
+            kurbo::flatten(curves, tolerance, |element| match element {
                 kurbo::PathEl::MoveTo(p) => contours.push(vec![DVec2::new(p.x, 40.0 - p.y)]),
                 kurbo::PathEl::LineTo(p) => contours.last_mut().unwrap().push(DVec2::new(p.x, 40.0 - p.y)),
                 _ => {}
@@ -351,6 +366,20 @@ mod tests {
         let document = svg(&near, &options()).unwrap();
         assert_eq!(read_back(&document).components(), 2);
         assert!(document.lines + document.cubics < 200, "only the place itself is exact");
+    }
+
+    #[test]
+    fn specks_stay_even_for_coarse_readers() {
+        let mut paths: Vec<_> = [0.005, 0.008, 0.011].map(|r| circle(1e3 * r, 20.0, r)).to_vec();
+        paths.extend([rectangle(20.0, 5.0, 1.0, 5.9e-6), rectangle(30.0, 5.0, 0.0024, 0.0024)]);
+        paths.extend([circle(30.0, 20.0, 9.0), circle(30.0, 20.0, 0.005)]);
+        let region = region(&paths);
+        assert_eq!((region.components(), region.holes()), (6, 1));
+        let document = svg(&region, &options()).unwrap();
+        for tolerance in [0.02, 0.5, 2.0, 20.0] {
+            let back = read_within(&document, tolerance * CHORD);
+            assert_eq!((back.components(), back.holes()), (6, 1), "read within {tolerance} chords");
+        }
     }
 
     fn star() -> impl Strategy<Value = Vec<DVec2>> {
