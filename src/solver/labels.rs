@@ -5,11 +5,12 @@ use std::collections::BinaryHeap;
 
 use rustc_hash::FxHashMap;
 
-use super::bound::NEVER;
+use super::bound::{NEVER, TopologyBound};
+use super::connectivity::Counts;
 use super::problem::{Cost, Problem};
 use super::search::Task;
 use super::variety::extend;
-use crate::topology::{Automaton, StateId};
+use crate::topology::{Automaton, Dominance, StateId};
 
 /// A partial run.
 pub(super) struct Label {
@@ -27,14 +28,19 @@ pub(super) struct Label {
 
 const NONE: u32 = u32::MAX;
 
+/// Where labels can stand for each other: length, piece, state when only equal ones can, and drift when runs
+/// are told apart by it.
+type Place = (u32, u32, u32, i32);
+
 /// All labels, findable by length and last piece. Labels at one place have the same estimate to the end, so
 /// one that is no dearer than another and whose state dominates can stand for it; those that it stands for
 /// are no longer found.
 pub(super) struct Labels {
     store: Vec<Label>,
-    /// The label met last at each length, piece and, when runs are told apart by it, drift.
-    latest: FxHashMap<(u32, u32, i32), u32>,
+    /// The label met last at each place.
+    latest: FxHashMap<Place, u32>,
     by_drift: bool,
+    by_state: bool,
 }
 
 impl Labels {
@@ -46,8 +52,9 @@ impl Labels {
         &self.store[at as usize]
     }
 
-    fn place(&self, label: &Label) -> (u32, u32, i32) {
-        (label.length, label.piece, if self.by_drift { label.drift } else { 0 })
+    fn place(&self, label: &Label) -> Place {
+        let state = if self.by_state { label.state.index() as u32 } else { 0 };
+        (label.length, label.piece, state, if self.by_drift { label.drift } else { 0 })
     }
 
     /// Adds a label unless another can stand for it; the ones that it can stand for are superseded.
@@ -110,6 +117,8 @@ pub(super) struct Search<'s> {
     pub(super) labels: Labels,
     /// The least estimate of a run that was dropped because it left the band; [`NEVER`] when none was.
     pub(super) drifted_at: Cost,
+    /// Where the topology's estimate is found for each piece and state.
+    columns: FxHashMap<(u32, StateId), Option<usize>>,
     /// Correlations of each label's run, when variety is asked for.
     correlations: Vec<Vec<f32>>,
     /// By estimate of the whole cost; among equals the longest run first, then the oldest.
@@ -118,12 +127,19 @@ pub(super) struct Search<'s> {
 
 impl<'s> Search<'s> {
     /// With `by_drift`, runs that have drifted differently never stand for each other.
-    pub(super) fn new(problem: &'s Problem<'s>, task: &'s Task<'s>, by_drift: bool) -> Self {
+    pub(super) fn new(
+        problem: &'s Problem<'s>,
+        task: &'s Task<'s>,
+        dominance: Dominance,
+        by_drift: bool,
+    ) -> Self {
+        let by_state = dominance == Dominance::Equal;
         Self {
             problem,
             task,
-            labels: Labels { store: Vec::new(), latest: FxHashMap::default(), by_drift },
+            labels: Labels { store: Vec::new(), latest: FxHashMap::default(), by_drift, by_state },
             drifted_at: NEVER,
+            columns: FxHashMap::default(),
             correlations: Vec::new(),
             open: BinaryHeap::new(),
         }
@@ -172,17 +188,11 @@ impl<'s> Search<'s> {
         let &Label { cost, length, piece, state, drift, .. } = self.labels.get(at);
         for step in &problem.steps[piece as usize] {
             let length = length + problem.widths[step.to];
-            let rest = self.task.bound.at(length, step.to);
-            if rest == NEVER {
-                continue;
-            }
-            let drift = drift + step.rise;
-            if drift.abs() > problem.drift_limit {
-                self.drifted_at = self.drifted_at.min((cost + step.cost).saturating_add(rest));
+            if self.task.bound.at(length, step.to) == NEVER {
                 continue;
             }
             if let Some(state) = automaton.step(state, step.to) {
-                let (cost, piece) = (cost + step.cost, step.to as u32);
+                let (cost, piece, drift) = (cost + step.cost, step.to as u32, drift + step.rise);
                 self.meet(
                     automaton,
                     Label { cost, length, piece, state, drift, parent: at, before: NONE, superseded: false },
@@ -191,9 +201,18 @@ impl<'s> Search<'s> {
         }
     }
 
+    /// The least cost of completing a run, as far as it is known.
+    fn rest(&mut self, automaton: &Automaton<'_>, label: &Label) -> Cost {
+        let plain = self.task.bound.at(label.length, label.piece as usize);
+        let Some(bound) = self.task.topology.filter(|_| plain != NEVER) else { return plain };
+        let entry = self.columns.entry((label.piece, label.state));
+        let column = *entry.or_insert_with(|| column(automaton, bound, label.piece as usize, label.state));
+        column.map_or(NEVER, |column| bound.at(label.length, column).max(plain))
+    }
+
     /// Takes up a label unless one that was met before can stand for it.
     fn meet(&mut self, automaton: &mut Automaton<'_>, label: Label) {
-        let rest = self.task.bound.at(label.length, label.piece as usize);
+        let rest = self.rest(automaton, &label);
         let at = self.labels.len() as u32;
         let mut correlations = Vec::new();
         let mut penalty = 0;
@@ -208,6 +227,10 @@ impl<'s> Search<'s> {
         if rest == NEVER || estimate >= self.task.ceiling {
             return;
         }
+        if label.drift.abs() > self.problem.drift_limit {
+            self.drifted_at = self.drifted_at.min(estimate);
+            return;
+        }
         let length = label.length;
         if let Some(at) = self.labels.add(automaton, label) {
             self.open.push((Reverse(estimate), length, Reverse(at)));
@@ -220,4 +243,15 @@ impl<'s> Search<'s> {
     fn penalty(&self, at: u32) -> Cost {
         self.problem.variety.map_or(0, |v| v.penalty(&self.correlations[at as usize]))
     }
+}
+
+/// Where the estimate with the topology is found for a run that ends with `piece` in `state`.
+pub(super) fn column(
+    automaton: &Automaton<'_>,
+    bound: &TopologyBound,
+    piece: usize,
+    state: StateId,
+) -> Option<usize> {
+    let (components, holes) = automaton.closed(state);
+    bound.column(piece, &automaton.connections(state)?, Counts { components, holes })
 }

@@ -12,9 +12,13 @@
 //! [`Automaton`]: crate::topology::Automaton
 
 mod bound;
+mod connectivity;
+mod counts;
 mod explain;
 mod labels;
+mod open;
 mod problem;
+mod reach;
 mod ring;
 mod search;
 mod variety;
@@ -33,7 +37,7 @@ use crate::topology::{Automaton, Goal, Shape};
 pub fn solve(problem: &Problem<'_>, goal: Goal) -> Result<Solution, Unsolved> {
     let mut automaton = Automaton::new(problem.descriptors, goal, problem.shape);
     match problem.shape {
-        Shape::Open => search::solve_open(problem, &mut automaton),
+        Shape::Open => open::solve_open(problem, &mut automaton),
         Shape::Ring => ring::solve_ring(problem, &mut automaton),
     }
 }

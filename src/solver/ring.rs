@@ -11,64 +11,21 @@
 //! of its narrowest cuts. That a ring has left the band from one first piece then says nothing about another,
 //! and a first piece from which cheap runs left the band is not removed.
 
-use super::bound::{Bound, NEVER};
+use super::bound::{Bound, NEVER, TopologyBound};
+use super::connectivity::Scope;
+use super::labels::column;
+use super::open::{Prospect, prospect, short};
 use super::problem::{Cost, Problem, Solution, Unsolved};
-use super::search::{BEAMS, Outcome, Task, solve_task};
+use super::search::{Outcome, Task, solve_task};
 use crate::topology::Automaton;
-
-/// No first piece may use up more than one part in so many of the labels, lest the others are never looked at.
-const SHARE: usize = 4;
-/// Beams give up at so many times the labels of A*.
-const BEAM_LABELS: usize = 12;
 
 /// The cheapest ring.
 pub(super) fn solve_ring(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
-    let left = |p: usize| problem.descriptors[p].left().len();
-    let right = |p: usize| problem.descriptors[p].right().len();
-    let mut portals: Vec<usize> = (0..problem.pieces()).map(left).collect();
-    portals.sort_unstable();
-    portals.dedup();
-    // What is broken somewhere does not go all the way round.
-    portals.retain(|&m| m > 0 || !automaton.goal().closed_pattern);
-    let mut best: Option<(Cost, Solution)> = None;
-    let (mut labels, mut floor) = (0, NEVER);
-    let opened = |m: usize| -> (Vec<bool>, Vec<usize>) {
-        let allowed: Vec<bool> = (0..problem.pieces()).map(|p| left(p) >= m && right(p) >= m).collect();
-        let firsts = (0..problem.pieces()).filter(|&p| allowed[p] && left(p) == m).collect();
-        (allowed, firsts)
-    };
-    for &m in &portals {
-        let (mut allowed, mut firsts) = opened(m);
-        while let Some((first, estimate)) = most_promising(problem, &firsts, &allowed) {
-            let ceiling = best.as_ref().map_or(NEVER, |b| b.0);
-            if estimate >= ceiling {
-                break;
-            }
-            let left_over = problem.label_limit.saturating_sub(labels);
-            if left_over == 0 {
-                floor = floor.min(estimate);
-                break;
-            }
-            let stop = closing_costs(problem, &[first], &allowed);
-            let bound = Bound::new(problem, &stop, &allowed);
-            let mut seen = true;
-            if bound.at(problem.widths[first], first) < ceiling {
-                let label_limit = left_over.min(problem.label_limit / SHARE);
-                let starts = vec![(first, 0)];
-                let task = Task { starts, stop: &stop, bound: &bound, ceiling, label_limit, beams: &[] };
-                let outcome: Outcome = solve_task(problem, automaton, &task);
-                labels += outcome.labels;
-                floor = floor.min(outcome.floor);
-                seen = !outcome.drifted;
-                best = outcome.found.or(best);
-            }
-            allowed[first] &= !seen;
-            firsts.retain(|&p| p != first);
-        }
+    let mut rings = Rings { problem, best: None, floor: NEVER, labels: 0 };
+    for m in narrowest_cuts(problem, automaton.goal().closed_pattern) {
+        rings.opened_at(automaton, m);
     }
-    if best.is_none() && floor != NEVER {
-        best = beams(problem, automaton, &portals, &opened, &mut labels);
-    }
+    let Rings { best, floor, labels, .. } = rings;
     match best {
         Some((total, solution)) => {
             let gap = total.saturating_sub(floor);
@@ -79,42 +36,111 @@ pub(super) fn solve_ring(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -
     }
 }
 
-/// A ring for each width of the beam, from the most promising first pieces on, until one is found.
-fn beams(
-    problem: &Problem<'_>,
-    automaton: &mut Automaton<'_>,
-    portals: &[usize],
-    opened: &impl Fn(usize) -> (Vec<bool>, Vec<usize>),
-    labels: &mut usize,
-) -> Option<(Cost, Solution)> {
-    let mut tries: Vec<(Cost, usize, usize)> = Vec::new();
-    for &m in portals {
-        let (allowed, firsts) = opened(m);
-        let stop = closing_costs(problem, &firsts, &allowed);
-        let bound = Bound::new(problem, &stop, &allowed);
-        tries.extend(firsts.iter().map(|&f| (bound.at(problem.widths[f], f), m, f)));
-    }
-    tries.retain(|t| t.0 != NEVER);
-    tries.sort_unstable();
-    for width in BEAMS {
-        for &(_, m, first) in &tries {
-            if *labels > BEAM_LABELS * problem.label_limit {
-                return None;
+/// The numbers of portals at which rings may have their narrowest cut.
+pub(super) fn narrowest_cuts(problem: &Problem<'_>, winds: bool) -> Vec<usize> {
+    let mut portals: Vec<usize> = problem.descriptors.iter().map(|d| d.left().len()).collect();
+    portals.sort_unstable();
+    portals.dedup();
+    // What is broken somewhere does not go all the way round.
+    portals.retain(|&m| m > 0 || !winds);
+    portals
+}
+
+/// The pieces that rings with m portals at the narrowest cut may consist of, and those that they may begin with.
+pub(super) fn pieces_of(problem: &Problem<'_>, m: usize) -> (Vec<bool>, Vec<usize>) {
+    let (left, right) =
+        (|p: usize| problem.descriptors[p].left().len(), |p: usize| problem.descriptors[p].right().len());
+    let allowed: Vec<bool> = (0..problem.pieces()).map(|p| left(p) >= m && right(p) >= m).collect();
+    let firsts = (0..problem.pieces()).filter(|&p| allowed[p] && left(p) == m).collect();
+    (allowed, firsts)
+}
+
+/// The search for the cheapest ring.
+struct Rings<'p> {
+    problem: &'p Problem<'p>,
+    /// The best so far, with its cost in all.
+    best: Option<(Cost, Solution)>,
+    /// No ring that was looked for costs less, unless it costs no less than the best.
+    floor: Cost,
+    labels: usize,
+}
+
+impl Rings<'_> {
+    /// Looks at the rings with `m` portals at the narrowest cut. Short searches come first; when they do not
+    /// end, the estimate with the topology is made, once for all first pieces.
+    fn opened_at(&mut self, automaton: &mut Automaton<'_>, m: usize) {
+        let problem = self.problem;
+        let (mut allowed, mut firsts) = pieces_of(problem, m);
+        let mut topology: Option<TopologyBound> = None;
+        let mut short = Some(short(problem));
+        while let Some((first, estimate)) = most_promising(problem, &firsts, &allowed) {
+            let ceiling = self.ceiling();
+            if estimate >= ceiling {
+                return;
             }
-            let (allowed, _) = opened(m);
             let stop = closing_costs(problem, &[first], &allowed);
             let bound = Bound::new(problem, &stop, &allowed);
-            let starts = vec![(first, 0)];
-            let task =
-                Task { starts, stop: &stop, bound: &bound, ceiling: NEVER, label_limit: 0, beams: &[width] };
-            let outcome = solve_task(problem, automaton, &task);
-            *labels += outcome.labels;
-            if outcome.found.is_some() {
-                return outcome.found;
+            let estimate = bound.at(problem.widths[first], first);
+            let mut seen = true;
+            if estimate < ceiling {
+                let left_over = problem.label_limit.saturating_sub(self.labels);
+                let task = Task {
+                    starts: vec![(first, 0)],
+                    stop: &stop,
+                    bound: &bound,
+                    topology: topology.as_ref(),
+                    ceiling,
+                    label_limit: short.unwrap_or(left_over).min(left_over),
+                    beams: short.is_none() && self.best.is_none(),
+                };
+                let outcome = solve_task(problem, automaton, &task);
+                let (is_settled, labels) = (outcome.is_settled(), outcome.labels);
+                seen = !outcome.drifted;
+                self.take(outcome, is_settled || short.is_none());
+                if !is_settled && short.take().is_some() {
+                    let scope = Scope {
+                        firsts: &firsts,
+                        allowed: &allowed,
+                        stop: &closing_costs(problem, &firsts, &allowed),
+                    };
+                    match prospect(problem, automaton, &scope) {
+                        Prospect::Never => return,
+                        Prospect::Open(found) => topology = found,
+                    }
+                    if let Some(bound) = &topology {
+                        // Rings through a piece from which none can be completed at less are ruled out.
+                        let ceiling = self.ceiling();
+                        let mut is_open = |&first: &usize| {
+                            let state = automaton.start(first);
+                            let column = state.and_then(|state| column(automaton, bound, first, state));
+                            column.is_some_and(|column| bound.at(problem.widths[first], column) < ceiling)
+                        };
+                        firsts.retain(|first| {
+                            let keep = is_open(first);
+                            allowed[*first] = keep;
+                            keep
+                        });
+                    }
+                    continue;
+                }
+                short = short.map(|limit| limit.saturating_sub(labels));
             }
+            allowed[first] &= !seen;
+            firsts.retain(|&p| p != first);
         }
     }
-    None
+
+    fn ceiling(&self) -> Cost {
+        self.best.as_ref().map_or(NEVER, |&(total, _)| total)
+    }
+
+    fn take(&mut self, outcome: Outcome, is_final: bool) {
+        self.labels += outcome.labels;
+        self.best = outcome.found.or(self.best.take());
+        if is_final {
+            self.floor = self.floor.min(outcome.floor);
+        }
+    }
 }
 
 /// What closing a ring after each piece costs, when it began with the cheapest of `firsts`.

@@ -7,9 +7,9 @@
 //! number of labels; then a beam along the length finds a sequence if it can, and the least estimate that A*
 //! had not yet settled says how far from the optimum that may be.
 
-use super::bound::{Bound, NEVER};
+use super::bound::{Bound, NEVER, TopologyBound};
 use super::labels::{Label, Labels, Search};
-use super::problem::{Cost, Problem, Solution, Unsolved};
+use super::problem::{Cost, Problem, Solution};
 use crate::topology::Automaton;
 
 /// Where runs begin and what they must look like.
@@ -20,12 +20,21 @@ pub(super) struct Task<'t> {
     pub(super) stop: &'t [Option<Cost>],
     /// The least cost of completing a run, ignoring topology.
     pub(super) bound: &'t Bound,
+    /// The least cost with the topology, if it was computed.
+    pub(super) topology: Option<&'t TopologyBound>,
     /// Only solutions that cost less in all, variety included, are of interest.
     pub(super) ceiling: Cost,
-    /// Labels at which A* gives up; with 0 there is only the beam.
+    /// Labels at which A* gives up.
     pub(super) label_limit: usize,
-    /// Labels kept at each length by the beams that are tried, one after the other, when A* found nothing.
-    pub(super) beams: &'t [usize],
+    /// Whether a beam is tried then.
+    pub(super) beams: bool,
+}
+
+impl Outcome {
+    /// Whether nothing better can exist.
+    pub(super) fn is_settled(&self) -> bool {
+        self.floor >= self.found.as_ref().map_or(NEVER, |&(total, _)| total)
+    }
 }
 
 /// What a search found.
@@ -44,32 +53,17 @@ pub(super) struct Outcome {
 /// to bite, and a beam finds a good sequence long before A* would prove one.
 const STATE_LIMIT: usize = 20_000;
 /// Labels kept at each length by the beam; widened until a sequence is found.
-pub(super) const BEAMS: [usize; 3] = [128, 1024, 8192];
-
-/// The cheapest open run.
-pub(super) fn solve_open(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
-    let bound = Bound::new(problem, &problem.end, &vec![true; problem.pieces()]);
-    let starts =
-        problem.begin.iter().enumerate().filter_map(|(piece, cost)| cost.map(|c| (piece, c))).collect();
-    let label_limit = problem.label_limit;
-    let task = Task { starts, stop: &problem.end, bound: &bound, ceiling: NEVER, label_limit, beams: &BEAMS };
-    let Outcome { found, floor, labels, .. } = solve_task(problem, automaton, &task);
-    match found {
-        Some((total, solution)) => Ok(Solution { gap: total.saturating_sub(floor), labels, ..solution }),
-        None if floor == NEVER => Err(Unsolved::Infeasible),
-        None => Err(Unsolved::TooLarge { labels }),
-    }
-}
+const BEAMS: [usize; 3] = [128, 1024, 8192];
 
 /// The cheapest run for `task`.
 pub(super) fn solve_task(problem: &Problem<'_>, automaton: &mut Automaton<'_>, task: &Task<'_>) -> Outcome {
     let mut outcome = Outcome { found: None, floor: 0, drifted: true, labels: 0 };
-    if task.label_limit > 0 {
+    {
         // In the second round only what is cheaper than the find of the first is of interest.
         for by_drift in [false, true] {
             let ceiling = outcome.found.as_ref().map_or(task.ceiling, |&(total, _)| total);
             let task = Task { starts: task.starts.clone(), ceiling, ..*task };
-            let mut search = Search::new(problem, &task, by_drift);
+            let mut search = Search::new(problem, &task, automaton.dominance(), by_drift);
             let round = best_first(&mut search, automaton);
             outcome.labels += search.labels.len();
             if let Some((total, at)) = round.best {
@@ -90,13 +84,10 @@ pub(super) fn solve_task(problem: &Problem<'_>, automaton: &mut Automaton<'_>, t
             }
         }
     }
-    if outcome.found.is_none() {
-        let labels = &mut outcome.labels;
-        outcome.found = task.beams.iter().find_map(|&width| {
-            let mut narrow = Search::new(problem, task, false);
-            let best = beam(&mut narrow, automaton, width);
-            *labels += narrow.labels.len();
-            let (total, at) = best?;
+    if outcome.found.is_none() && task.beams {
+        outcome.found = BEAMS.iter().find_map(|&width| {
+            let mut narrow = Search::new(problem, task, automaton.dominance(), false);
+            let (total, at) = beam(&mut narrow, automaton, width)?;
             Some((total, narrow.solution(automaton, at)))
         });
     }
@@ -124,9 +115,10 @@ fn best_first(search: &mut Search<'_>, automaton: &mut Automaton<'_>) -> Round {
         if search.labels.is_superseded(at) {
             continue;
         }
-        if let Some(total) = search.total(automaton, at).filter(|t| best.is_none_or(|(known, _)| *t < known))
-        {
-            best = Some((total, at));
+        if let Some(total) = search.total(automaton, at) {
+            if best.is_none_or(|(known, _)| total < known) {
+                best = Some((total, at));
+            }
         }
         search.extend(automaton, at);
     }
@@ -151,10 +143,10 @@ fn beam(search: &mut Search<'_>, automaton: &mut Automaton<'_>, width: usize) ->
             if search.labels.is_superseded(at) {
                 continue;
             }
-            if let Some(total) =
-                search.total(automaton, at).filter(|t| best.is_none_or(|(known, _)| *t < known))
-            {
-                best = Some((total, at));
+            if let Some(total) = search.total(automaton, at) {
+                if best.is_none_or(|(known, _)| total < known) {
+                    best = Some((total, at));
+                }
             }
             search.extend(automaton, at);
         }

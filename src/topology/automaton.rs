@@ -138,18 +138,37 @@ impl<'a> Automaton<'a> {
         if let Some(&known) = self.steps.get(&key) {
             return known;
         }
-        let State { left, right, closed, holes, .. } = &self.states[state.index()];
-        let wide = |labels: &[u16]| labels.iter().map(|&l| u32::from(l)).collect::<Vec<_>>();
-        // χ only carries the holes here, and labels that the goal does not read are not kept.
-        let mut run = Descriptor::new(&wide(left), &wide(right), *closed, 0);
-        run = Descriptor::new(&wide(left), &wide(right), *closed, i64::from(closed + run.open()));
-        let holes = *holes;
+        let holes = self.states[state.index()].holes;
+        let run = self.run(state);
         let found = match self.pieces.get(piece).map(|p| run.join(p)) {
             Some(Ok(joined)) => self.enter(&joined, holes),
             _ => None,
         };
         self.steps.insert(key, found);
         found
+    }
+
+    /// A run in `state` as far as the goal reads it: labels and closed components that it does not read are
+    /// not kept, and there are no holes.
+    fn run(&self, state: StateId) -> Descriptor {
+        let State { left, right, closed, open, .. } = &self.states[state.index()];
+        let wide = |labels: &[u16]| labels.iter().map(|&l| u32::from(l)).collect::<Vec<_>>();
+        Descriptor::new(&wide(left), &wide(right), *closed, i64::from(closed + open))
+    }
+
+    /// How the open portals of a run in `state` are connected, if the goal reads it.
+    pub fn connections(&self, state: StateId) -> Option<Descriptor> {
+        self.reads_partition().then(|| self.run(state).connections())
+    }
+
+    /// The components and the holes that are closed in `state`, 0 where the goal does not read them.
+    pub fn closed(&self, state: StateId) -> (u32, u32) {
+        let State { closed, holes, .. } = self.states[state.index()];
+        (closed, holes)
+    }
+
+    fn reads_partition(&self) -> bool {
+        self.goal.components.is_some() || self.goal.holes.is_some() || self.goal.closed_pattern
     }
 
     /// The state of `run`, which has `holes` more than its Euler characteristic says.
@@ -161,19 +180,19 @@ impl<'a> Automaton<'a> {
         if self.goal.holes.is_some_and(|most| holes > most) {
             return None;
         }
-        let reads_partition = self.goal.components.is_some()
-            || self.goal.holes.is_some()
-            || (self.goal.closed_pattern && self.shape == Shape::Ring);
         let keep_left = self.shape == Shape::Ring;
         let blank = |labels: &[u16]| vec![0u16; labels.len()];
-        let (left, right) = match (reads_partition, keep_left) {
+        let (left, right) = match (self.reads_partition(), keep_left) {
             (true, true) => (run.left().to_vec(), run.right().to_vec()),
             // Without the left side, components that reach only it would be lost: they are none, as an open
             // run begins without portals.
             (true, false) => (Vec::new(), run.right().to_vec()),
             (false, _) => (if keep_left { blank(run.left()) } else { Vec::new() }, blank(run.right())),
         };
-        let open = run.open();
+        let open = match self.reads_partition() {
+            true => run.open(),
+            false => u32::from(left.len() + right.len() > 0),
+        };
         if let Some(target) = self.goal.components {
             // Every open component is going to be a part of at least one more closed one.
             if run.closed() + u32::from(open > 0) > target {
@@ -206,24 +225,12 @@ impl<'a> Automaton<'a> {
                     && self.goal.components.is_none_or(|n| n == *closed)
                     && self.goal.holes.is_none_or(|n| n == *holes)
             }
-            Shape::Ring => left.len() == right.len() && self.ring_admitted(left, right, *closed, *holes),
+            Shape::Ring => {
+                let closes =
+                    |ring: Topology| self.goal.admits(Topology { holes: holes + ring.holes, ..ring });
+                left.len() == right.len() && self.run(state).close().is_ok_and(closes)
+            }
         }
-    }
-
-    fn ring_admitted(&self, left: &[u16], right: &[u16], closed: u32, holes: u32) -> bool {
-        let wide = |labels: &[u16]| labels.iter().map(|&l| u32::from(l)).collect::<Vec<_>>();
-        let mut run = Descriptor::new(&wide(left), &wide(right), closed, 0);
-        run = Descriptor::new(
-            &wide(left),
-            &wide(right),
-            closed,
-            i64::from(closed + run.open()) - i64::from(holes),
-        );
-        run.close().is_ok_and(|ring| {
-            self.goal.components.is_none_or(|n| n == ring.components)
-                && self.goal.holes.is_none_or(|n| n == ring.holes)
-                && (ring.closed_pattern || !self.goal.closed_pattern)
-        })
     }
 
     /// How states at one place compare for this goal.

@@ -86,6 +86,11 @@ impl Descriptor {
         (i64::from(self.closed + self.open()) - self.euler) as u32
     }
 
+    /// The same portals, connected in the same way, with nothing closed and no holes.
+    pub fn connections(&self) -> Self {
+        Self { closed: 0, euler: i64::from(self.open()), ..self.clone() }
+    }
+
     /// The run `self` followed by `next`, glued portal by portal.
     ///
     /// χ(A∪B) = χ(A) + χ(B) − m, as m segments of χ = 1 are shared; a component that is left without a

@@ -1,0 +1,192 @@
+//! The graph of how runs can be connected, whatever their length and whatever they have counted.
+//!
+//! A node is a last piece and how the open portals of the run are connected; an edge is a join and the
+//! components and holes that it closes. Counts and costs only add up along a path, so questions of how many
+//! and how much are path questions on this graph. Excluded: drift, and in a ring which of the first pieces
+//! with equally many portals it began with. What the graph forbids is impossible; what it allows may not be.
+
+use rustc_hash::FxHashMap;
+
+use super::problem::{Cost, Problem};
+use crate::topology::{Descriptor, Goal, Shape};
+
+/// Components and holes that are closed on the way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Counts {
+    pub(super) components: u32,
+    pub(super) holes: u32,
+}
+
+impl Counts {
+    pub(super) fn plus(self, other: Self) -> Self {
+        Self { components: self.components + other.components, holes: self.holes + other.holes }
+    }
+}
+
+/// A join.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Edge {
+    pub(super) to: u32,
+    pub(super) cost: Cost,
+    pub(super) closes: Counts,
+}
+
+/// Stopping at a node.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ending {
+    pub(super) cost: Cost,
+    pub(super) closes: Counts,
+}
+
+/// The part of a problem that a search looks at.
+pub(super) struct Scope<'s> {
+    /// The first pieces.
+    pub(super) firsts: &'s [usize],
+    /// The pieces that may occur.
+    pub(super) allowed: &'s [bool],
+    /// What stopping after each piece costs, where it may stop.
+    pub(super) stop: &'s [Option<Cost>],
+}
+
+/// The graph.
+#[derive(Clone)]
+pub(super) struct Connectivity {
+    /// The last piece of each node.
+    pieces: Vec<u32>,
+    edges: Vec<Edge>,
+    /// Where the edges of each node begin, and where all end.
+    first_edge: Vec<u32>,
+    endings: Vec<Option<Ending>>,
+    starts: Vec<(u32, Counts)>,
+    states: FxHashMap<Descriptor, u32>,
+    nodes: FxHashMap<(u32, u32), u32>,
+}
+
+/// Nodes at which the graph is given up.
+const NODE_LIMIT: usize = 30_000;
+
+impl Connectivity {
+    /// The graph of all runs within `scope` of which the goal does not rule out a join by itself; `None` when
+    /// it is too large.
+    pub(super) fn new(problem: &Problem<'_>, goal: Goal, scope: &Scope<'_>) -> Option<Self> {
+        let mut graph = Self {
+            pieces: Vec::new(),
+            edges: Vec::new(),
+            first_edge: Vec::new(),
+            endings: Vec::new(),
+            starts: Vec::new(),
+            states: FxHashMap::default(),
+            nodes: FxHashMap::default(),
+        };
+        let mut states: Vec<Descriptor> = Vec::new();
+        let mut joins: FxHashMap<(u32, u32), Option<(u32, Counts)>> = FxHashMap::default();
+        let mut queue: Vec<(u32, u32)> = Vec::new();
+        for &first in scope.firsts {
+            let (state, closes) = enter(&mut graph.states, &mut states, &problem.descriptors[first]);
+            if admits(goal, closes, states[state as usize].open()) {
+                let node = graph.meet(first as u32, state, &mut queue);
+                graph.starts.push((node, closes));
+            }
+        }
+        let mut at = 0;
+        while let Some(&(piece, state)) = queue.get(at) {
+            at += 1;
+            if queue.len() > NODE_LIMIT {
+                return None;
+            }
+            graph.first_edge.push(graph.edges.len() as u32);
+            let ending = scope.stop[piece as usize];
+            let ending =
+                ending.and_then(|cost| ending_of(&states[state as usize], problem.shape, goal, cost));
+            graph.endings.push(ending);
+            for step in problem.steps[piece as usize].iter().filter(|s| scope.allowed[s.to]) {
+                let key = (state, step.to as u32);
+                let joined = *joins.entry(key).or_insert_with(|| {
+                    let run = states[state as usize].join(&problem.descriptors[step.to]).ok()?;
+                    let (state, closes) = enter(&mut graph.states, &mut states, &run);
+                    admits(goal, closes, run.open()).then_some((state, closes))
+                });
+                if let Some((state, closes)) = joined {
+                    let to = graph.meet(step.to as u32, state, &mut queue);
+                    graph.edges.push(Edge { to, cost: step.cost, closes });
+                }
+            }
+        }
+        graph.first_edge.push(graph.edges.len() as u32);
+        Some(graph)
+    }
+
+    fn meet(&mut self, piece: u32, state: u32, queue: &mut Vec<(u32, u32)>) -> u32 {
+        *self.nodes.entry((piece, state)).or_insert_with(|| {
+            self.pieces.push(piece);
+            queue.push((piece, state));
+            self.pieces.len() as u32 - 1
+        })
+    }
+
+    /// The number of nodes.
+    pub(super) fn len(&self) -> usize {
+        self.pieces.len()
+    }
+
+    /// The number of edges.
+    pub(super) fn joins(&self) -> usize {
+        self.edges.len()
+    }
+
+    /// The last piece of a node.
+    pub(super) fn piece(&self, node: usize) -> usize {
+        self.pieces[node] as usize
+    }
+
+    /// The joins from a node.
+    pub(super) fn edges(&self, node: usize) -> &[Edge] {
+        &self.edges[self.first_edge[node] as usize..self.first_edge[node + 1] as usize]
+    }
+
+    /// What stopping at a node costs and closes, where it is possible with a goal's winding.
+    pub(super) fn ending(&self, node: usize) -> Option<Ending> {
+        self.endings[node]
+    }
+
+    /// The runs of one piece, and what is closed in them.
+    pub(super) fn starts(&self) -> &[(u32, Counts)] {
+        &self.starts
+    }
+
+    /// The node of a run by its last piece and its connections, in which nothing is closed.
+    pub(super) fn node(&self, piece: usize, connections: &Descriptor) -> Option<usize> {
+        let state = *self.states.get(connections)?;
+        self.nodes.get(&(piece as u32, state)).map(|&node| node as usize)
+    }
+}
+
+/// The state of a run with nothing closed, and what was.
+fn enter(
+    known: &mut FxHashMap<Descriptor, u32>,
+    states: &mut Vec<Descriptor>,
+    run: &Descriptor,
+) -> (u32, Counts) {
+    let closes = Counts { components: run.closed(), holes: run.holes() };
+    let connections = run.connections();
+    let state = *known.entry(connections.clone()).or_insert_with(|| {
+        states.push(connections);
+        states.len() as u32 - 1
+    });
+    (state, closes)
+}
+
+/// Whether closing this much at once leaves a chance to meet the goal.
+fn admits(goal: Goal, closes: Counts, open: u32) -> bool {
+    goal.components.is_none_or(|most| closes.components + u32::from(open > 0) <= most)
+        && goal.holes.is_none_or(|most| closes.holes <= most)
+}
+
+fn ending_of(run: &Descriptor, shape: Shape, goal: Goal, cost: Cost) -> Option<Ending> {
+    let topology = match shape {
+        Shape::Open => run.finished()?,
+        Shape::Ring => run.close().ok()?,
+    };
+    let closes = Counts { components: topology.components, holes: topology.holes };
+    (topology.closed_pattern || !goal.closed_pattern).then_some(Ending { cost, closes })
+}

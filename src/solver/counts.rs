@@ -1,0 +1,207 @@
+//! Which numbers of components and holes runs can have: one pass forward along the length.
+//!
+//! At every length and node of the [`Connectivity`] graph it carries the set of counts of all runs that end
+//! there, as bits; a join shifts the set by what it closes. Only as many lengths as the widest piece has bins
+//! are held at a time. As the graph knows no drift, the sets hold every count that can be had, and may hold
+//! some that cannot.
+
+use super::connectivity::{Connectivity, Counts};
+use super::problem::Problem;
+use crate::topology::Goal;
+
+/// A set of counts: for each number of components, a set of numbers of holes. A number that is not read is 0.
+pub(super) struct CountSet {
+    frame: Frame,
+    bits: Vec<u64>,
+}
+
+/// Which counts are read, and up to which.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Caps {
+    /// The most components; `None` does not read them.
+    pub(super) components: Option<u32>,
+    /// The most holes; `None` does not read them.
+    pub(super) holes: Option<u32>,
+}
+
+impl Caps {
+    /// Just what a goal reads.
+    pub(super) fn of(goal: Goal) -> Self {
+        Self { components: goal.components, holes: goal.holes }
+    }
+}
+
+/// How a set lies in memory: rows of bits.
+#[derive(Clone, Copy)]
+struct Frame {
+    caps: Caps,
+    rows: usize,
+    words: usize,
+}
+
+/// Word operations at which a pass is not begun: about a second.
+const WORK_LIMIT: usize = 1_000_000_000;
+
+/// The counts of all runs in the window; `None` when the pass would be too long.
+pub(super) fn counts(problem: &Problem<'_>, graph: &Connectivity, caps: Caps) -> Option<CountSet> {
+    let frame = Frame::new(caps);
+    let longest = *problem.window.end() as usize;
+    let size = frame.rows * frame.words;
+    let work = longest.saturating_mul(graph.joins()).saturating_mul(size);
+    if work > WORK_LIMIT {
+        return None;
+    }
+    let n = graph.len();
+    let layers = problem.widths.iter().max().map_or(1, |&w| w as usize) + 1;
+    let mut sets = vec![0u64; layers * n * size];
+    let mut is_met = vec![false; layers * n];
+    let mut found = vec![0u64; size];
+    for &(node, closes) in graph.starts() {
+        let length = problem.widths[graph.piece(node as usize)] as usize;
+        let place = length % layers * n + node as usize;
+        let mut one = vec![0u64; size];
+        one[0] = 1;
+        frame.add_shifted(&mut sets[place * size..][..size], &one, closes);
+        is_met[place] = true;
+    }
+    let mut set = vec![0u64; size];
+    for length in 1..=longest {
+        for node in 0..n {
+            let place = length % layers * n + node;
+            if !std::mem::take(&mut is_met[place]) {
+                continue;
+            }
+            let here = &mut sets[place * size..][..size];
+            set.copy_from_slice(here);
+            here.fill(0);
+            if let Some(ending) = graph.ending(node).filter(|_| problem.window.contains(&(length as u32))) {
+                frame.add_shifted(&mut found, &set, ending.closes);
+            }
+            for edge in graph.edges(node) {
+                let longer = length + problem.widths[graph.piece(edge.to as usize)] as usize;
+                if longer <= longest {
+                    let place = longer % layers * n + edge.to as usize;
+                    frame.add_shifted(&mut sets[place * size..][..size], &set, edge.closes);
+                    is_met[place] = true;
+                }
+            }
+        }
+    }
+    Some(CountSet { frame, bits: found })
+}
+
+/// From the fewest to the most components and holes of the runs in the window; `None` when there is no run. Both
+/// ends of a range can be had, each by itself and as far as the graph knows.
+pub(super) fn ranges(problem: &Problem<'_>, graph: &Connectivity) -> Option<Ranges> {
+    let longest = *problem.window.end() as usize;
+    let n = graph.len();
+    let layers = problem.widths.iter().max().map_or(1, |&w| w as usize) + 1;
+    let mut met: Vec<Option<Ranges>> = vec![None; layers * n];
+    for &(node, closes) in graph.starts() {
+        let length = problem.widths[graph.piece(node as usize)] as usize;
+        Ranges::EMPTY.plus(closes).join(&mut met[length % layers * n + node as usize]);
+    }
+    let mut found = None;
+    for length in 1..=longest {
+        for node in 0..n {
+            let Some(here) = met[length % layers * n + node].take() else { continue };
+            if let Some(ending) = graph.ending(node).filter(|_| problem.window.contains(&(length as u32))) {
+                here.plus(ending.closes).join(&mut found);
+            }
+            for edge in graph.edges(node) {
+                let longer = length + problem.widths[graph.piece(edge.to as usize)] as usize;
+                if longer <= longest {
+                    here.plus(edge.closes).join(&mut met[longer % layers * n + edge.to as usize]);
+                }
+            }
+        }
+    }
+    found
+}
+
+/// Least and greatest counts.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ranges {
+    pub(super) least: Counts,
+    pub(super) most: Counts,
+}
+
+impl Ranges {
+    const EMPTY: Self =
+        Self { least: Counts { components: 0, holes: 0 }, most: Counts { components: 0, holes: 0 } };
+
+    fn plus(self, closes: Counts) -> Self {
+        Self { least: self.least.plus(closes), most: self.most.plus(closes) }
+    }
+
+    /// Widens `other` to hold this.
+    fn join(self, other: &mut Option<Self>) {
+        let known = other.get_or_insert(self);
+        known.least.components = known.least.components.min(self.least.components);
+        known.least.holes = known.least.holes.min(self.least.holes);
+        known.most.components = known.most.components.max(self.most.components);
+        known.most.holes = known.most.holes.max(self.most.holes);
+    }
+
+    /// Whether neither count of a goal is out of range.
+    pub(super) fn admit(&self, goal: Goal) -> bool {
+        let within = |wanted: Option<u32>, least, most| wanted.is_none_or(|n| (least..=most).contains(&n));
+        within(goal.components, self.least.components, self.most.components)
+            && within(goal.holes, self.least.holes, self.most.holes)
+    }
+}
+
+impl CountSet {
+    /// Whether a run can have what `goal` asks for.
+    pub(super) fn has(&self, goal: Goal) -> bool {
+        let read = |cap: Option<u32>, wanted: Option<u32>| cap.and(wanted).unwrap_or(0);
+        let wanted = Counts {
+            components: read(self.frame.caps.components, goal.components),
+            holes: read(self.frame.caps.holes, goal.holes),
+        };
+        self.frame
+            .place(wanted)
+            .is_some_and(|(row, bit)| self.bits[row * self.frame.words + bit / 64] & (1 << (bit % 64)) != 0)
+    }
+}
+
+impl Frame {
+    fn new(caps: Caps) -> Self {
+        // One count alone lies along the bits.
+        let (rows, bits) = match (caps.components, caps.holes) {
+            (Some(components), Some(holes)) => (components as usize + 1, holes as usize + 1),
+            (Some(count), None) | (None, Some(count)) => (1, count as usize + 1),
+            (None, None) => (1, 1),
+        };
+        Self { caps, rows, words: bits.div_ceil(64) }
+    }
+
+    /// The row and the bit of these counts; `None` beyond the caps.
+    fn place(&self, counts: Counts) -> Option<(usize, usize)> {
+        let Caps { components, holes } = self.caps;
+        let fits = components.is_none_or(|cap| counts.components <= cap)
+            && holes.is_none_or(|cap| counts.holes <= cap);
+        let (components, holes) =
+            (components.map(|_| counts.components as usize), holes.map(|_| counts.holes as usize));
+        fits.then(|| match (components, holes) {
+            (Some(components), Some(holes)) => (components, holes),
+            (one, other) => (0, one.or(other).unwrap_or(0)),
+        })
+    }
+
+    /// Adds to `set` what `other` holds, with so much more closed. What lies beyond the caps may be lost.
+    fn add_shifted(&self, set: &mut [u64], other: &[u64], closes: Counts) {
+        let Some((rows, bits)) = self.place(closes) else { return };
+        let (words, bits) = (bits / 64, bits % 64);
+        for row in rows..self.rows {
+            let from = &other[(row - rows) * self.words..][..self.words];
+            let to = &mut set[row * self.words..][..self.words];
+            for w in words..self.words {
+                to[w] |= from[w - words] << bits;
+                if bits > 0 && w > words {
+                    to[w] |= from[w - words - 1] >> (64 - bits);
+                }
+            }
+        }
+    }
+}
