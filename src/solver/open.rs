@@ -41,7 +41,7 @@ pub(super) fn solve_open(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -
         };
         let before = outcome;
         let ceiling = before.found.as_ref().map_or(NEVER, |&(total, _)| total);
-        let long = task(topology.as_ref(), ceiling, usize::MAX, before.found.is_none());
+        let long = task(topology.as_deref(), ceiling, usize::MAX, before.found.is_none());
         outcome = solve_task(problem, automaton, &long);
         outcome.labels += before.labels;
         outcome.floor = outcome.floor.max(before.floor);
@@ -60,7 +60,7 @@ pub(super) enum Prospect {
     /// It cannot be met.
     Never,
     /// It may be met; with the estimate for it, if it is not too large.
-    Open(Option<TopologyBound>),
+    Open(Option<Box<TopologyBound>>),
 }
 
 /// Looks at a goal that a short search could not decide.
@@ -80,7 +80,7 @@ pub(super) fn prospect(problem: &Problem<'_>, automaton: &mut Automaton<'_>, sco
         return Prospect::Never;
     }
     if let Some(bound) = TopologyBound::new(problem, goal, &graph) {
-        return Prospect::Open(Some(bound));
+        return Prospect::Open(Some(Box::new(bound)));
     }
     if counts(problem, &graph, Caps::of(goal)).is_some_and(|set| !set.has(goal)) {
         return Prospect::Never;

@@ -71,7 +71,7 @@ impl Rings<'_> {
     fn opened_at(&mut self, automaton: &mut Automaton<'_>, m: usize) {
         let problem = self.problem;
         let (mut allowed, mut firsts) = pieces_of(problem, m);
-        let mut topology: Option<TopologyBound> = None;
+        let mut topology: Option<Box<TopologyBound>> = None;
         let mut short = Some(short(problem));
         while let Some((first, estimate)) = most_promising(problem, &firsts, &allowed) {
             let ceiling = self.ceiling();
@@ -88,7 +88,7 @@ impl Rings<'_> {
                     starts: vec![(first, 0)],
                     stop: &stop,
                     bound: &bound,
-                    topology: topology.as_ref(),
+                    topology: topology.as_deref(),
                     ceiling,
                     label_limit: short.unwrap_or(left_over).min(left_over),
                     beams: short.is_none() && self.best.is_none(),

@@ -115,10 +115,9 @@ fn best_first(search: &mut Search<'_>, automaton: &mut Automaton<'_>) -> Round {
         if search.labels.is_superseded(at) {
             continue;
         }
-        if let Some(total) = search.total(automaton, at) {
-            if best.is_none_or(|(known, _)| total < known) {
-                best = Some((total, at));
-            }
+        if let Some(total) = search.total(automaton, at).filter(|t| best.is_none_or(|(known, _)| *t < known))
+        {
+            best = Some((total, at));
         }
         search.extend(automaton, at);
     }
@@ -143,10 +142,10 @@ fn beam(search: &mut Search<'_>, automaton: &mut Automaton<'_>, width: usize) ->
             if search.labels.is_superseded(at) {
                 continue;
             }
-            if let Some(total) = search.total(automaton, at) {
-                if best.is_none_or(|(known, _)| total < known) {
-                    best = Some((total, at));
-                }
+            if let Some(total) =
+                search.total(automaton, at).filter(|t| best.is_none_or(|(known, _)| *t < known))
+            {
+                best = Some((total, at));
             }
             search.extend(automaton, at);
         }

@@ -25,16 +25,7 @@ impl Variety {
 
 /// exp(−d/σ) for a distance d of piece numbers; beyond a few pieces it is nothing.
 fn correlation(a: usize, b: usize) -> f32 {
-    const NEAR: [f32; 8] = [
-        1.0,
-        0.135_335_28,
-        0.018_315_639,
-        0.002_478_752_2,
-        3.354_626_2e-4,
-        4.539_993e-5,
-        6.144_212e-6,
-        8.315_287e-7,
-    ];
+    const NEAR: [f32; 8] = [1.0, 0.135_335, 0.018_316, 0.002_479, 0.000_335, 0.000_045, 0.000_006, 0.000_001];
     NEAR.get(a.abs_diff(b)).copied().unwrap_or(0.0)
 }
 
