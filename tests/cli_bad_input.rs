@@ -268,8 +268,8 @@ fn a_band_that_folds_or_meets_itself() {
     refuses("--along circle:5mm", &["folds at (", "radius of 2.500 mm", "narrower --width"]);
     // The paths cross in the middle of the page; the edges of the band meet first, a little before.
     refuses(
-        "--along path:curves.svg#eight --width 0.2",
-        &["meets itself at (60.", "along the curve", "--width"],
+        "--along path:curves.svg#eight --width 0.5",
+        &["meets itself at (", "along the curve", "--width"],
     );
     refuses(
         "--along path:curves.svg#corner --width 6",
@@ -292,7 +292,7 @@ fn constraints_that_cannot_be_met() {
     refuses("vine.svg --along line:1mm", &["curve's 1.0 mm", "the shortest that can be made is", "--width"]);
     refuses(
         "strands.svg --along line:120mm --components 1",
-        &["exactly 1 component(s)", "closes before the end", "the nearest that can be had is --components 3"],
+        &["exactly 1 component(s)", "keeps all its strands together", "the nearest that can be had is --components 3"],
     );
     refuses(
         "strands.svg --along line:120mm --components 3 --holes 1",
