@@ -292,7 +292,11 @@ fn constraints_that_cannot_be_met() {
     refuses("vine.svg --along line:1mm", &["curve's 1.0 mm", "the shortest that can be made is", "--width"]);
     refuses(
         "strands.svg --along line:120mm --components 1",
-        &["exactly 1 component(s)", "keeps all its strands together", "the nearest that can be had is --components 3"],
+        &[
+            "exactly 1 component(s)",
+            "keeps all its strands together",
+            "the nearest that can be had is --components 3",
+        ],
     );
     refuses(
         "strands.svg --along line:120mm --components 3 --holes 1",
