@@ -88,12 +88,12 @@ pub(super) struct BandArguments {
     /// Height of the band; the exemplar is scaled to it [default: the exemplar's own height]
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(super) width: Option<f64>,
-    /// Exactly so many connected components [default: free]
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
-    pub(super) components: Option<u32>,
-    /// Exactly so many holes; the inside of a closed ring is one [default: free]
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
-    pub(super) holes: Option<u32>,
+    /// So many connected components: a number, a range with both ends as 2..5, or any
+    #[arg(long, value_name = "N", value_parser = values::wanted, default_value = "any", hide_default_value = true, allow_negative_numbers = true)]
+    pub(super) components: values::Count,
+    /// So many holes: a number, a range or any; the inside of a closed ring is one
+    #[arg(long, value_name = "M", value_parser = values::wanted, default_value = "any", hide_default_value = true, allow_negative_numbers = true)]
+    pub(super) holes: values::Count,
     /// The pattern must go all the way round a closed curve
     #[arg(long)]
     pub(super) closed_pattern: bool,

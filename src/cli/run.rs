@@ -119,10 +119,10 @@ fn builder(a: &BandArguments) -> BandBuilder {
     if let Some(width) = a.width {
         builder = builder.width_mm(width);
     }
-    if let Some(components) = a.components {
+    if let Some(components) = a.components.0 {
         builder = builder.components(components);
     }
-    if let Some(holes) = a.holes {
+    if let Some(holes) = a.holes.0 {
         builder = builder.holes(holes);
     }
     if let Some(seed) = a.seed {

@@ -1,7 +1,7 @@
 //! Values of options as they are typed.
 
 use crate::domain::{CurveSpec, parse_length_mm};
-use crate::job::SlicingChoice;
+use crate::job::{SlicingChoice, Wanted, WantedError};
 
 /// A length in millimetres: `12mm`, `1.2cm`, `0.5in`, `34pt`, `45px` or `12`.
 pub(super) fn length(text: &str) -> Result<f64, String> {
@@ -11,6 +11,21 @@ pub(super) fn length(text: &str) -> Result<f64, String> {
 /// A curve: `line:120mm`, `circle:65mm`, `path:FILE.svg#id`.
 pub(super) fn curve(text: &str) -> Result<CurveSpec, String> {
     text.parse::<CurveSpec>().map_err(|e| e.to_string())
+}
+
+/// How many of something: `None` when any number will do. (A name of its own, as the parser of arguments gives
+/// `Option` a meaning.)
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Count(pub(super) Option<Wanted>);
+
+/// `3`, `2..5` or `any`.
+pub(super) fn wanted(text: &str) -> Result<Count, String> {
+    match text {
+        "any" => Ok(Count(None)),
+        text => {
+            text.parse().map(|wanted| Count(Some(wanted))).map_err(|e: WantedError| format!("{e}, or any"))
+        }
+    }
 }
 
 /// `reeb`, `reeb:0.2mm` or `uniform:12`.

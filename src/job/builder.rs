@@ -10,7 +10,7 @@ use crate::domain::CurveSpec;
 use crate::pieces::CostWeights;
 use crate::planar::Tolerances;
 use crate::solver::Variety;
-use crate::topology::Goal;
+use crate::topology::{Goal, Wanted};
 
 /// How the exemplar is sliced.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -71,15 +71,15 @@ impl BandBuilder {
         self
     }
 
-    /// The number of connected components; left out, it is free.
-    pub fn components(mut self, components: u32) -> Self {
-        self.goal.components = Some(components);
+    /// The number of connected components, or a range of numbers; left out, it is free.
+    pub fn components(mut self, components: impl Into<Wanted>) -> Self {
+        self.goal.components = Some(components.into());
         self
     }
 
-    /// The number of holes; left out, it is free. The inside of a closed ring counts as one.
-    pub fn holes(mut self, holes: u32) -> Self {
-        self.goal.holes = Some(holes);
+    /// The number of holes, or a range of numbers; left out, it is free. The inside of a closed ring counts as one.
+    pub fn holes(mut self, holes: impl Into<Wanted>) -> Self {
+        self.goal.holes = Some(holes.into());
         self
     }
 
@@ -163,14 +163,14 @@ impl BandBuilder {
         if !(0.0..=1e6).contains(&self.beta) {
             return Err(out_of_range("--variety", self.beta, "it must be from 0 to 1000000"));
         }
-        if self.goal.components == Some(0) {
+        if self.goal.components.is_some_and(|wanted| wanted.most() == 0) {
             return Err(JobError::Option {
                 option: "--components",
                 found: "0 components is no band".to_owned(),
                 wanted: "ask for 1 or more, or leave it out".to_owned(),
             });
         }
-        if self.goal.closed_pattern && self.goal.holes == Some(0) {
+        if self.goal.closed_pattern && self.goal.holes.is_some_and(|wanted| wanted.most() == 0) {
             return Err(JobError::Option {
                 option: "--closed-pattern",
                 found: "a pattern that goes all the way round has a hole, its inside, but --holes 0 was asked for"

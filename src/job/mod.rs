@@ -41,3 +41,5 @@ pub use output::{Format, Output, Target};
 pub use plan::{Plan, PlanError, PlanOptions, plan};
 pub use report::{BandReport, InputReport, SeamReport, StageTime};
 pub use stage::Stage;
+
+pub use crate::topology::{Wanted, WantedError};

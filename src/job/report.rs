@@ -51,10 +51,10 @@ pub struct BandReport {
     pub curve: Option<InputReport>,
     /// The seed, if one was given.
     pub seed: Option<u64>,
-    /// Components that were asked for.
-    pub wanted_components: Option<u32>,
-    /// Holes that were asked for.
-    pub wanted_holes: Option<u32>,
+    /// The least and the greatest number of components that were asked for.
+    pub wanted_components: Option<[u32; 2]>,
+    /// The least and the greatest number of holes that were asked for.
+    pub wanted_holes: Option<[u32; 2]>,
     /// Whether a closed pattern was asked for.
     pub wanted_closed_pattern: bool,
     /// Components of the written files.
