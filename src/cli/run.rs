@@ -109,6 +109,7 @@ fn builder(a: &BandArguments) -> BandBuilder {
     let mut builder = BandBuilder::new(&a.exemplar, a.along.clone())
         .closed_pattern(a.closed_pattern)
         .slicing(a.slicing)
+        .mirror(a.mirror)
         .variety(a.variety)
         .alpha(a.alpha)
         .jump_cost(a.jump_cost)
@@ -116,6 +117,9 @@ fn builder(a: &BandArguments) -> BandBuilder {
         .chord_mm(a.tolerances.chord)
         .min_feature_mm(a.tolerances.min_feature.unwrap_or(0.0))
         .min_gap_mm(a.tolerances.min_gap.unwrap_or(0.0));
+    for &range in &a.keep {
+        builder = builder.keep(range);
+    }
     if let Some(width) = a.width {
         builder = builder.width_mm(width);
     }
@@ -181,7 +185,7 @@ fn run_analyze(arguments: &AnalyzeArguments) -> Result<ExitCode, CliError> {
         SlicingChoice::Persistence(persistence_mm) => Some(SlicingRule::Reeb { persistence_mm }),
         SlicingChoice::Uniform(lines) => Some(SlicingRule::Uniform { lines }),
     };
-    let analysis = Analysis::new(&exemplar, rule, &tolerances, &CostWeights::default())?;
+    let analysis = Analysis::keeping(&exemplar, rule, &arguments.keep, &tolerances, &CostWeights::default())?;
     write_all(&outputs, |format| match format {
         Format::Png => analysis.overlay_png(OVERLAY_PIXELS).map_err(JobError::from),
         Format::Svg | Format::Stl => Ok(analysis.overlay_svg().into_bytes()),

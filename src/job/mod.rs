@@ -33,11 +33,12 @@ mod refusal;
 mod report;
 mod stage;
 
+pub use crate::reeb::KeptRange;
 pub use band::Band;
 pub use builder::{BandBuilder, BandJob, SlicingChoice};
 pub use error::{JobError, OutlineFault};
 pub use extrude::{ExtrudeReport, extrude};
 pub use output::{Format, Output, Target};
 pub use plan::{Plan, PlanError, PlanOptions, plan};
-pub use report::{BandReport, InputReport, SeamReport, StageTime};
+pub use report::{BandReport, DroppedCutReport, InputReport, SeamReport, StageTime};
 pub use stage::Stage;

@@ -137,7 +137,6 @@ fn window(length_mm: f64, epsilon: f64, bin_mm: f64) -> Option<std::ops::RangeIn
 
 fn problem<'a>(catalogue: &'a Catalogue, options: &PlanOptions, bin_mm: f64) -> Problem<'a> {
     let pieces = catalogue.pieces();
-    let last = pieces.len() - 1;
     let micro = |cost: f64| (cost * 1e6).round() as Cost;
     // Both ends of each piece are rounded to bins, so that errors do not add up along the exemplar.
     let bins = |mm: f64| (mm / bin_mm).round() as u32;
@@ -165,10 +164,14 @@ fn problem<'a>(catalogue: &'a Catalogue, options: &PlanOptions, bin_mm: f64) -> 
         .collect();
     // Only the exemplar's own ends are no jumps.
     let end_cost = |is_own: bool| Some(if is_own { 0 } else { micro(options.weights.jump) });
-    let begin =
-        pieces.iter().enumerate().map(|(i, p)| if p.left.is_empty() { end_cost(i == 0) } else { None });
-    let end =
-        pieces.iter().enumerate().map(|(i, p)| if p.right.is_empty() { end_cost(i == last) } else { None });
+    let begin = pieces
+        .iter()
+        .enumerate()
+        .map(|(i, p)| if p.left.is_empty() { end_cost(catalogue.is_own_begin(i)) } else { None });
+    let end = pieces
+        .iter()
+        .enumerate()
+        .map(|(i, p)| if p.right.is_empty() { end_cost(catalogue.is_own_end(i)) } else { None });
     Problem {
         shape: options.shape,
         descriptors: catalogue.descriptors(),

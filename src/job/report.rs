@@ -27,6 +27,15 @@ pub struct SeamReport {
     pub worst_angle_after_deg: f64,
 }
 
+/// A cut that was left out, as its narrowest portal is under the minimum feature (Zhou 2014 §5.2.1).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct DroppedCutReport {
+    /// Where it would have been, from the left edge of the exemplar at the size that it has in the band.
+    pub x_mm: f64,
+    /// The height of its narrowest portal.
+    pub portal_mm: f64,
+}
+
 /// How long a stage took.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct StageTime {
@@ -75,7 +84,15 @@ pub struct BandReport {
     pub pieces_in_exemplar: usize,
     /// Pieces of the band.
     pub pieces_in_result: usize,
-    /// The pieces of the band in order, by their number in the exemplar from 0.
+    /// Whether pieces may be used left for right.
+    pub mirror: bool,
+    /// Pieces of the band that are.
+    pub mirrored_pieces_in_result: usize,
+    /// Ranges of the exemplar that were not cut, from its left edge at the size that it has in the band.
+    pub kept_mm: Vec<[f64; 2]>,
+    /// Cuts left out because of the minimum feature.
+    pub dropped_cuts: Vec<DroppedCutReport>,
+    /// The pieces of the band in order, by their number in the exemplar from 0; n + i is piece i of n, mirrored.
     pub sequence: Vec<usize>,
     /// The cost of the sequence (Zhou 2014 §3.6.1, with jumps and rises).
     pub cost: f64,
