@@ -189,7 +189,13 @@ impl Analysis {
         weights: &CostWeights,
     ) -> Result<Self, AnalysisError> {
         weights.validate()?;
-        let region = exemplar.region();
+        // What a band leaves out as well.
+        let (region, specks) = exemplar.region().without_specks(tolerances.chord_mm().powi(2));
+        let region = &region;
+        let mut notes = exemplar.notes().to_vec();
+        if !specks.is_empty() {
+            notes.push(format!("{} speck(s) too small for the chord error are left out", specks.len()));
+        }
         let (low, high) = region.bounds_mm().unwrap_or_default();
         let rule = rule.unwrap_or_else(|| SlicingRule::reeb_for_width(high.x - low.x));
         let reeb = ReebGraph::new(region);
@@ -217,7 +223,7 @@ impl Analysis {
             cuts: cuts.iter().map(|cut| CutFound::new(region, cut)).collect(),
             dropped_cuts: dropped.collect(),
             pieces: pieces.map(|(i, piece)| PieceFound::new(&catalogue, i, piece)).collect(),
-            notes: exemplar.notes().to_vec(),
+            notes,
             region: region.clone(),
         })
     }

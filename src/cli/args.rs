@@ -76,7 +76,9 @@ Examples:
   One piece that a nozzle of 0.5 mm can print:
     openwork verify sign.svg --components 1 --holes 0 --min-feature 0.5mm
   What a solid has, as JSON:
-    openwork verify sign.stl --json";
+    openwork verify sign.stl --json
+  Whether a report proves the counts of the file that was written with it:
+    openwork verify --certificate bracelet.json bracelet.svg";
 
 #[derive(Debug, Args)]
 pub(super) struct BandArguments {
@@ -202,6 +204,9 @@ pub(super) struct ExtrudeArguments {
 pub(super) struct VerifyArguments {
     /// The file (.svg or .stl)
     pub(super) file: PathBuf,
+    /// The report that was written with the file: replay its certificate, step by step
+    #[arg(long, value_name = "REPORT.json")]
+    pub(super) certificate: Option<PathBuf>,
     /// Components (SVG) or shells (STL) that it must have
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(super) components: Option<usize>,

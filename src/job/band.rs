@@ -2,10 +2,8 @@
 
 use std::path::Path;
 
-use glam::DVec2;
-use sha2::{Digest, Sha256};
-
 use super::builder::{BandJob, SlicingChoice};
+use super::certificate::{Certificate, FileDigest, sha256};
 use super::error::JobError;
 use super::extrude::{check_stl, name};
 use super::output::{Format, Output, Pending, Target, persist};
@@ -25,9 +23,11 @@ use crate::reeb::{ReebGraph, Slicing, SlicingRule};
 use crate::solver::autocorrelation;
 use crate::topology::{Shape, Topology};
 use crate::verify::{self, Expected, Mismatch, Narrowest, SvgReport};
+use glam::DVec2;
 
-/// The chord error is shared out: flattening the exemplar, bending, mapping, and fitting curves for the SVG.
-const READ_SHARE: f64 = 0.25;
+/// The chord error is shared out: this part is for flattening the exemplar, the others for bending, for mapping and
+/// for fitting curves to the SVG.
+pub const READ_SHARE: f64 = 0.25;
 const FIT_SHARE: f64 = 0.125;
 const MAP_SHARE: f64 = 0.125;
 const SVG_SHARE: f64 = 0.5;
@@ -161,10 +161,16 @@ impl Band {
         let file = svg_name.map_or_else(|| "the drawing".into(), |o| name(o.target()));
         found.check(&expected).map_err(|mismatch| self.mismatch(file, mismatch, &found))?;
         let mut pending = Vec::new();
+        let mut digests = Vec::new();
+        let mut digest = |output: &Output, bytes: &[u8]| {
+            let file = name(output.target()).display().to_string();
+            digests.push(FileDigest { file, format: output.format().name(), sha256: sha256(bytes) });
+        };
         for output in outputs {
             let item = match output.format() {
                 Format::Svg => {
                     report.svg_segments = Some([drawing.lines, drawing.cubics]);
+                    digest(output, drawing.text.as_bytes());
                     let item = Pending::new(output.target(), drawing.text.clone().into_bytes())?;
                     if clock.time(Stage::Verify, || item.read_again())? != drawing.text.as_bytes() {
                         let source = std::io::Error::other("the file differs from what was written to it");
@@ -175,6 +181,7 @@ impl Band {
                 }
                 Format::Stl => {
                     let bytes = clock.time(Stage::Stl, || self.stl())?;
+                    digest(output, &bytes);
                     let item = Pending::new(output.target(), bytes)?;
                     let solid = clock.time(Stage::Verify, || check_stl(output.target(), &item, &expected))?;
                     report.triangles = Some(solid.triangles);
@@ -186,6 +193,7 @@ impl Band {
                 Format::Png => {
                     let picture =
                         clock.time(Stage::Png, || export::png(&self.part.region, export::DEFAULT_PIXELS))?;
+                    digest(output, &picture);
                     Pending::new(output.target(), picture)?
                 }
             };
@@ -197,6 +205,7 @@ impl Band {
                 narrowest.width_mm
             ));
         }
+        report.certificate.seal([found.components, found.holes], digests);
         report.components = found.components;
         report.holes = found.holes;
         report.min_feature = found.min_feature;
@@ -288,8 +297,7 @@ fn read_curve(
 }
 
 fn sha256_of(file: &Path) -> String {
-    let bytes = std::fs::read(file).unwrap_or_default();
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+    sha256(&std::fs::read(file).unwrap_or_default())
 }
 
 fn slice(job: &BandJob, exemplar: Exemplar) -> Result<Cut, JobError> {
@@ -508,6 +516,13 @@ fn describe(
         genus: None,
         volume_mm3: None,
         files: Vec::new(),
+        certificate: Certificate::new(
+            &cut.catalogue,
+            &plan.sequence,
+            if map.curve().is_closed() { Shape::Ring } else { Shape::Open },
+            options.goal,
+            planned,
+        ),
         notes,
         times,
     }

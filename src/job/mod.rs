@@ -24,8 +24,10 @@
 
 mod band;
 mod builder;
+mod certificate;
 mod error;
 mod extrude;
+mod json;
 mod output;
 mod part;
 mod plan;
@@ -34,8 +36,12 @@ mod report;
 mod stage;
 
 pub use crate::reeb::KeptRange;
-pub use band::Band;
+pub use band::{Band, READ_SHARE};
 pub use builder::{BandBuilder, BandJob, SlicingChoice};
+pub use certificate::{
+    BridgeStep, Certificate, Closing, Connections, FileDigest, PieceDescriptor, ResultCounts, Steps,
+    WantedCounts,
+};
 pub use error::{JobError, OutlineFault};
 pub use extrude::{ExtrudeReport, extrude};
 pub use output::{Format, Output, Target};

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use super::certificate::Certificate;
+use super::json;
 use crate::domain::Squeeze;
 use crate::verify::Narrowest;
 
@@ -140,6 +142,8 @@ pub struct BandReport {
     pub volume_mm3: Option<f64>,
     /// The files that were written.
     pub files: Vec<String>,
+    /// What proves the counts without trusting the search.
+    pub certificate: Certificate,
     /// What the user may want to know.
     pub notes: Vec<String>,
     /// Time per stage.
@@ -147,11 +151,8 @@ pub struct BandReport {
 }
 
 impl BandReport {
-    /// The report as indented JSON, ending in a line break.
+    /// The report as indented JSON, arrays on one line, ending in a line break.
     pub fn to_json(&self) -> String {
-        let mut text =
-            serde_json::to_string_pretty(self).expect("a report has no maps with keys that are not text");
-        text.push('\n');
-        text
+        json::indented(self)
     }
 }
