@@ -1,11 +1,12 @@
 //! What the way of slicing does to a band: the table of `docs/slicing.md`.
 //!
-//!     cargo run --release --example slicing_table -- [--pictures FOLDER] EXEMPLAR.svg...
+//!     cargo run --release --example slicing_table -- [--pictures FOLDER] [--least PART] EXEMPLAR.svg...
 //!
 //! Each exemplar, scaled to a height of 20 mm, is cut by events of at least several persistences, given in parts of
 //! its width W, and at as many equally spaced lines as the default gives. Each catalogue makes a band of 240 mm, of
 //! whatever topology and of one component. The longest repeat is the longest run of pieces that occurs twice, in
-//! parts of the number of pieces. Without arguments it shows one small exemplar.
+//! parts of the number of pieces. `--least 0.001` leaves out smaller persistences, which take minutes where a drawing
+//! has pieces of a few micrometres. Without arguments it shows one small exemplar.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -23,11 +24,13 @@ const PARTS: [f64; 7] = [0.0, 0.001, 0.002, 0.003, 0.005, 0.01, 0.02];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments: Vec<PathBuf> = std::env::args_os().skip(1).map(PathBuf::from).collect();
-    let mut pictures = None;
-    if arguments.first().is_some_and(|a| a.as_os_str() == "--pictures") && arguments.len() > 1 {
-        pictures = Some(arguments.remove(1));
-        arguments.remove(0);
-    }
+    let mut option = |name: &str| {
+        let at =
+            arguments.iter().position(|a| a.as_os_str() == name).filter(|at| at + 1 < arguments.len())?;
+        arguments.drain(at..at + 2).nth(1)
+    };
+    let pictures = option("--pictures");
+    let least: f64 = option("--least").map_or(Ok(0.0), |part| part.to_string_lossy().parse())?;
     let is_short = arguments.is_empty();
     if is_short {
         arguments.push("fixtures/exemplars/wave.svg".into());
@@ -46,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let (low, high) = exemplar.region().bounds_mm().unwrap_or_default();
         let width_mm = high.x - low.x;
         let parts = if is_short { &PARTS[2..4] } else { &PARTS[..] };
-        for &part in parts {
+        for &part in parts.iter().filter(|&&part| part >= least) {
             let slicing = SlicingChoice::Persistence(part * width_mm);
             row(file, &exemplar, &format!("{part} W"), slicing, pictures.as_deref())?;
         }
