@@ -12,3 +12,4 @@ band $exemplars/vine.svg --along circle:65mm --width 14mm --components 1 --close
 band $exemplars/lace.svg --along path:fixtures/curves/wave.svg --width 14mm --components 1 -o $pictures/lace.png
 band $exemplars/strokes.svg --along path:fixtures/curves/oval.svg#oval --width 14mm --components 1 --closed-pattern -o $pictures/oval.png
 "$openwork" analyze $exemplars/vine.svg -o $pictures/analysis.png --quiet
+cargo run --release --locked --quiet --example persistences -- $exemplars/vine.svg $pictures/persistences.png

@@ -1,7 +1,7 @@
 //! Values of options as they are typed.
 
 use crate::domain::{CurveSpec, parse_length_mm};
-use crate::job::{SlicingChoice, Wanted, WantedError};
+use crate::job::{KeptRange, SlicingChoice, Wanted, WantedError};
 
 /// A length in millimetres: `12mm`, `1.2cm`, `0.5in`, `34pt`, `45px` or `12`.
 pub(super) fn length(text: &str) -> Result<f64, String> {
@@ -43,9 +43,30 @@ pub(super) fn slicing(text: &str) -> Result<SlicingChoice, String> {
     }
 }
 
+/// A range of the exemplar: `10mm..24mm`.
+pub(super) fn kept(text: &str) -> Result<KeptRange, String> {
+    let Some((from, to)) = text.split_once("..") else {
+        return Err(format!("'{text}' is no range; write two lengths and two dots, such as 10mm..24mm"));
+    };
+    let (from_mm, to_mm) = (length(from)?, length(to)?);
+    if from_mm >= to_mm {
+        return Err(format!("'{text}' ends before it begins; give the left end first"));
+    }
+    Ok(KeptRange { from_mm, to_mm })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn ranges_are_two_lengths_in_order() {
+        assert_eq!(kept("1.5..2.25cm"), Ok(KeptRange { from_mm: 1.5, to_mm: 22.5 }));
+        assert_eq!(kept("1cm..12mm"), Ok(KeptRange { from_mm: 10.0, to_mm: 12.0 }));
+        for wrong in ["10mm", "5mm..3mm", "4..4", "..3mm", "1mm..x", "1mm...."] {
+            assert!(kept(wrong).is_err(), "{wrong}");
+        }
+    }
 
     #[test]
     fn slicing_is_read_and_taught() {

@@ -2,17 +2,15 @@
 
 use std::path::Path;
 
-use glam::DVec2;
-use sha2::{Digest, Sha256};
-
 use super::builder::{BandJob, SlicingChoice};
+use super::certificate::{Certificate, FileDigest, sha256};
 use super::error::JobError;
 use super::extrude::{check_stl, name};
 use super::output::{Format, Output, Pending, Target, persist};
 use super::part::{Part, PartError};
 use super::plan::{Plan, PlanError, PlanOptions, plan};
 use super::refusal;
-use super::report::{BandReport, InputReport, SeamReport, StageTime};
+use super::report::{BandReport, DroppedCutReport, InputReport, SeamReport, StageTime};
 use super::stage::{Clock, Stage};
 use crate::domain::{BandMap, CurveSpec, PlanarCurve};
 use crate::exemplar::{Exemplar, Limits, ReadOptions, read_path};
@@ -25,9 +23,11 @@ use crate::reeb::{ReebGraph, Slicing, SlicingRule};
 use crate::solver::autocorrelation;
 use crate::topology::{Shape, Topology};
 use crate::verify::{self, Expected, Mismatch, Narrowest, SvgReport};
+use glam::DVec2;
 
-/// The chord error is shared out: flattening the exemplar, bending, mapping, and fitting curves for the SVG.
-const READ_SHARE: f64 = 0.25;
+/// The chord error is shared out: this part is for flattening the exemplar, the others for bending, for mapping and
+/// for fitting curves to the SVG.
+pub const READ_SHARE: f64 = 0.25;
 const FIT_SHARE: f64 = 0.125;
 const MAP_SHARE: f64 = 0.125;
 const SVG_SHARE: f64 = 0.5;
@@ -53,6 +53,7 @@ struct Cut {
     slicing: Slicing,
     catalogue: Catalogue,
     weights: CostWeights,
+    mirror: bool,
     height_mm: f64,
     /// Parts and holes that are too small to be told from nothing at the chord error.
     specks: Vec<DVec2>,
@@ -61,12 +62,12 @@ struct Cut {
 impl Cut {
     /// Weighs every join instead of the cheapest few; `false` if that changes nothing.
     fn admit_all_successors(&mut self) -> bool {
-        let pieces = self.catalogue.pieces().len();
+        let pieces = self.catalogue.originals();
         if self.weights.successors >= pieces {
             return false;
         }
         self.weights.successors = pieces;
-        self.catalogue = Catalogue::new(&self.region, &self.slicing.cuts, &self.weights);
+        self.catalogue = catalogue(&self.region, &self.slicing, &self.weights, self.mirror);
         true
     }
 }
@@ -160,10 +161,16 @@ impl Band {
         let file = svg_name.map_or_else(|| "the drawing".into(), |o| name(o.target()));
         found.check(&expected).map_err(|mismatch| self.mismatch(file, mismatch, &found))?;
         let mut pending = Vec::new();
+        let mut digests = Vec::new();
+        let mut digest = |output: &Output, bytes: &[u8]| {
+            let file = name(output.target()).display().to_string();
+            digests.push(FileDigest { file, format: output.format().name(), sha256: sha256(bytes) });
+        };
         for output in outputs {
             let item = match output.format() {
                 Format::Svg => {
                     report.svg_segments = Some([drawing.lines, drawing.cubics]);
+                    digest(output, drawing.text.as_bytes());
                     let item = Pending::new(output.target(), drawing.text.clone().into_bytes())?;
                     if clock.time(Stage::Verify, || item.read_again())? != drawing.text.as_bytes() {
                         let source = std::io::Error::other("the file differs from what was written to it");
@@ -174,6 +181,7 @@ impl Band {
                 }
                 Format::Stl => {
                     let bytes = clock.time(Stage::Stl, || self.stl())?;
+                    digest(output, &bytes);
                     let item = Pending::new(output.target(), bytes)?;
                     let solid = clock.time(Stage::Verify, || check_stl(output.target(), &item, &expected))?;
                     report.triangles = Some(solid.triangles);
@@ -185,6 +193,7 @@ impl Band {
                 Format::Png => {
                     let picture =
                         clock.time(Stage::Png, || export::png(&self.part.region, export::DEFAULT_PIXELS))?;
+                    digest(output, &picture);
                     Pending::new(output.target(), picture)?
                 }
             };
@@ -196,6 +205,7 @@ impl Band {
                 narrowest.width_mm
             ));
         }
+        report.certificate.seal([found.components, found.holes], digests);
         report.components = found.components;
         report.holes = found.holes;
         report.min_feature = found.min_feature;
@@ -287,8 +297,7 @@ fn read_curve(
 }
 
 fn sha256_of(file: &Path) -> String {
-    let bytes = std::fs::read(file).unwrap_or_default();
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+    sha256(&std::fs::read(file).unwrap_or_default())
 }
 
 fn slice(job: &BandJob, exemplar: Exemplar) -> Result<Cut, JobError> {
@@ -308,11 +317,17 @@ fn slice(job: &BandJob, exemplar: Exemplar) -> Result<Cut, JobError> {
         SlicingChoice::Persistence(persistence_mm) => SlicingRule::Reeb { persistence_mm },
         SlicingChoice::Uniform(lines) => SlicingRule::Uniform { lines },
     };
-    let slicing = Slicing::new(region, &ReebGraph::new(region), rule, &job.tolerances)?;
-    let weights = job.options.weights;
-    let catalogue = Catalogue::new(region, &slicing.cuts, &weights);
+    let reeb = ReebGraph::new(region);
+    let slicing = Slicing::keeping(region, &reeb, rule, &job.options.kept, &job.tolerances)?;
+    let (weights, mirror) = (job.options.weights, job.options.mirror);
+    let catalogue = catalogue(region, &slicing, &weights, mirror);
     let (region, height_mm) = (region.clone(), high.y - low.y);
-    Ok(Cut { region, slicing, catalogue, weights, height_mm, exemplar, specks })
+    Ok(Cut { region, slicing, catalogue, weights, mirror, height_mm, exemplar, specks })
+}
+
+fn catalogue(region: &Region, slicing: &Slicing, weights: &CostWeights, mirror: bool) -> Catalogue {
+    let new = if mirror { Catalogue::with_mirrored } else { Catalogue::new };
+    new(region, &slicing.cuts, weights)
 }
 
 /// The topology of a sequence by joining all descriptors, independently of the automaton that led the search.
@@ -358,6 +373,23 @@ fn make_part(
     })
 }
 
+/// Cuts named in a note; a report lists all.
+const DROPPED_SHOWN: usize = 5;
+
+/// What to say of cuts through ink that is too thin.
+fn dropped_note(slicing: &Slicing) -> Option<String> {
+    let dropped = &slicing.dropped;
+    let shown = dropped.iter().take(DROPPED_SHOWN).map(|d| format!("{:.2} ({:.3})", d.x_mm, d.portal_mm));
+    let shown = shown.collect::<Vec<_>>().join(", ");
+    let more = if dropped.len() > DROPPED_SHOWN { ", ..." } else { "" };
+    (!dropped.is_empty()).then(|| {
+        format!(
+            "{} cut(s) were left out, as they pass through ink thinner than --min-feature: at x (portal) {shown}{more} mm",
+            dropped.len()
+        )
+    })
+}
+
 #[expect(
     clippy::too_many_arguments,
     reason = "a report draws on every stage, and this is the only place that sees all"
@@ -386,11 +418,8 @@ fn describe(
             first.y
         ));
     }
-    if !cut.slicing.dropped.is_empty() {
-        notes.push(format!(
-            "{} cut(s) were left out, as they pass through ink thinner than --min-feature",
-            cut.slicing.dropped.len()
-        ));
+    if let Some(note) = dropped_note(&cut.slicing) {
+        notes.push(note);
     }
     if let (SlicingChoice::Uniform(lines), 1..) = (options.slicing, cut.slicing.missed) {
         notes.push(format!(
@@ -443,8 +472,21 @@ fn describe(
         width_mm: cut.height_mm,
         thickness_mm: options.thickness_mm,
         chord_mm: job.tolerances.chord_mm(),
-        pieces_in_exemplar: cut.catalogue.pieces().len(),
+        pieces_in_exemplar: cut.catalogue.originals(),
         pieces_in_result: plan.sequence.len(),
+        mirror: cut.mirror,
+        mirrored_pieces_in_result: plan
+            .sequence
+            .iter()
+            .filter(|&&p| cut.catalogue.origin(p).is_mirrored)
+            .count(),
+        kept_mm: options.kept.iter().map(|k| [k.from_mm, k.to_mm]).collect(),
+        dropped_cuts: cut
+            .slicing
+            .dropped
+            .iter()
+            .map(|d| DroppedCutReport { x_mm: d.x_mm, portal_mm: d.portal_mm })
+            .collect(),
         sequence: plan.sequence.clone(),
         cost: plan.cost,
         optimal: plan.gap.map(|gap| gap == 0.0),
@@ -474,6 +516,13 @@ fn describe(
         genus: None,
         volume_mm3: None,
         files: Vec::new(),
+        certificate: Certificate::new(
+            &cut.catalogue,
+            &plan.sequence,
+            if map.curve().is_closed() { Shape::Ring } else { Shape::Open },
+            options.goal,
+            planned,
+        ),
         notes,
         times,
     }

@@ -9,6 +9,7 @@ use super::stage::Stage;
 use crate::domain::CurveSpec;
 use crate::pieces::CostWeights;
 use crate::planar::Tolerances;
+use crate::reeb::KeptRange;
 use crate::solver::Variety;
 use crate::topology::{Goal, Wanted};
 
@@ -32,6 +33,8 @@ pub struct BandBuilder {
     pub(super) width_mm: Option<f64>,
     pub(super) goal: Goal,
     pub(super) slicing: SlicingChoice,
+    pub(super) kept: Vec<KeptRange>,
+    pub(super) mirror: bool,
     pub(super) seed: Option<u64>,
     pub(super) beta: f64,
     pub(super) weights: CostWeights,
@@ -54,6 +57,8 @@ impl BandBuilder {
             width_mm: None,
             goal: Goal::default(),
             slicing: SlicingChoice::default(),
+            kept: Vec::new(),
+            mirror: false,
             seed: None,
             beta: 0.0,
             weights: CostWeights::default(),
@@ -92,6 +97,19 @@ impl BandBuilder {
     /// How the exemplar is sliced.
     pub fn slicing(mut self, slicing: SlicingChoice) -> Self {
         self.slicing = slicing;
+        self
+    }
+
+    /// A range of the exemplar that is not cut, in millimetres from its left edge at the size that it has in the
+    /// band; may be called again.
+    pub fn keep(mut self, range: KeptRange) -> Self {
+        self.kept.push(range);
+        self
+    }
+
+    /// Whether every piece may be used left for right as well.
+    pub fn mirror(mut self, mirror: bool) -> Self {
+        self.mirror = mirror;
         self
     }
 

@@ -24,8 +24,10 @@
 
 mod band;
 mod builder;
+mod certificate;
 mod error;
 mod extrude;
+mod json;
 mod output;
 mod part;
 mod plan;
@@ -33,13 +35,18 @@ mod refusal;
 mod report;
 mod stage;
 
-pub use band::Band;
+pub use crate::reeb::KeptRange;
+pub use band::{Band, READ_SHARE};
 pub use builder::{BandBuilder, BandJob, SlicingChoice};
+pub use certificate::{
+    BridgeStep, Certificate, Closing, Connections, FileDigest, PieceDescriptor, ResultCounts, Steps,
+    WantedCounts,
+};
 pub use error::{JobError, OutlineFault};
 pub use extrude::{ExtrudeReport, extrude};
 pub use output::{Format, Output, Target};
 pub use plan::{Plan, PlanError, PlanOptions, plan};
-pub use report::{BandReport, InputReport, SeamReport, StageTime};
+pub use report::{BandReport, DroppedCutReport, InputReport, SeamReport, StageTime};
 pub use stage::Stage;
 
 pub use crate::topology::{Wanted, WantedError};

@@ -154,7 +154,6 @@ fn window(length_mm: f64, epsilon: f64, bin_mm: f64) -> Option<std::ops::RangeIn
 
 fn problem<'a>(catalogue: &'a Catalogue, options: &PlanOptions, bin_mm: f64) -> Problem<'a> {
     let pieces = catalogue.pieces();
-    let last = pieces.len() - 1;
     let micro = |cost: f64| (cost * 1e6).round() as Cost;
     // A piece that is longer than any run may be is as good as one that just does not fit.
     let too_long = (options.length_mm * 2.0 / bin_mm) as u32 + 2;
@@ -179,10 +178,14 @@ fn problem<'a>(catalogue: &'a Catalogue, options: &PlanOptions, bin_mm: f64) -> 
         .collect();
     // Only the exemplar's own ends are no jumps.
     let end_cost = |is_own: bool| Some(if is_own { 0 } else { micro(options.weights.jump) });
-    let begin =
-        pieces.iter().enumerate().map(|(i, p)| if p.left.is_empty() { end_cost(i == 0) } else { None });
-    let end =
-        pieces.iter().enumerate().map(|(i, p)| if p.right.is_empty() { end_cost(i == last) } else { None });
+    let begin = pieces
+        .iter()
+        .enumerate()
+        .map(|(i, p)| if p.left.is_empty() { end_cost(catalogue.is_own_begin(i)) } else { None });
+    let end = pieces
+        .iter()
+        .enumerate()
+        .map(|(i, p)| if p.right.is_empty() { end_cost(catalogue.is_own_end(i)) } else { None });
     Problem {
         shape: options.shape,
         descriptors: catalogue.descriptors(),

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use super::certificate::Certificate;
+use super::json;
 use crate::domain::Squeeze;
 use crate::verify::Narrowest;
 
@@ -25,6 +27,15 @@ pub struct SeamReport {
     pub worst_angle_before_deg: f64,
     /// The greatest turn of a contour at a seam after fitting, in degrees.
     pub worst_angle_after_deg: f64,
+}
+
+/// A cut that was left out, as its narrowest portal is under the minimum feature (Zhou 2014 §5.2.1).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct DroppedCutReport {
+    /// Where it would have been, from the left edge of the exemplar at the size that it has in the band.
+    pub x_mm: f64,
+    /// The height of its narrowest portal.
+    pub portal_mm: f64,
 }
 
 /// How long a stage took.
@@ -75,7 +86,15 @@ pub struct BandReport {
     pub pieces_in_exemplar: usize,
     /// Pieces of the band.
     pub pieces_in_result: usize,
-    /// The pieces of the band in order, by their number in the exemplar from 0.
+    /// Whether pieces may be used left for right.
+    pub mirror: bool,
+    /// Pieces of the band that are.
+    pub mirrored_pieces_in_result: usize,
+    /// Ranges of the exemplar that were not cut, from its left edge at the size that it has in the band.
+    pub kept_mm: Vec<[f64; 2]>,
+    /// Cuts left out because of the minimum feature.
+    pub dropped_cuts: Vec<DroppedCutReport>,
+    /// The pieces of the band in order, by their number in the exemplar from 0; n + i is piece i of n, mirrored.
     pub sequence: Vec<usize>,
     /// The cost of the sequence (Zhou 2014 §3.6.1, with jumps and rises).
     pub cost: f64,
@@ -123,6 +142,8 @@ pub struct BandReport {
     pub volume_mm3: Option<f64>,
     /// The files that were written.
     pub files: Vec<String>,
+    /// What proves the counts without trusting the search.
+    pub certificate: Certificate,
     /// What the user may want to know.
     pub notes: Vec<String>,
     /// Time per stage.
@@ -130,11 +151,8 @@ pub struct BandReport {
 }
 
 impl BandReport {
-    /// The report as indented JSON, ending in a line break.
+    /// The report as indented JSON, arrays on one line, ending in a line break.
     pub fn to_json(&self) -> String {
-        let mut text =
-            serde_json::to_string_pretty(self).expect("a report has no maps with keys that are not text");
-        text.push('\n');
-        text
+        json::indented(self)
     }
 }

@@ -161,6 +161,7 @@ impl Cheapest<'_> {
                 let beyond = Beyond::new(self.threshold, self.threshold - self.least);
                 let Passage { found, drifted_at, beyond, labels, is_cut_short } = walk.run(automaton, beyond);
                 member.keep_table(table);
+                self.labels += labels;
                 round.drifted_at = round.drifted_at.min(drifted_at);
                 round.beyond.add(&beyond);
                 self.best = found.or(self.best.take());
