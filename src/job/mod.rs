@@ -39,5 +39,7 @@ pub use error::{JobError, OutlineFault};
 pub use extrude::{ExtrudeReport, extrude};
 pub use output::{Format, Output, Target};
 pub use plan::{Plan, PlanError, PlanOptions, plan};
-pub use report::{BandReport, InputReport, SeamReport, StageTime};
+pub use report::{BandReport, FallbackReport, InputReport, SeamReport, StageTime, StitchReport};
 pub use stage::Stage;
+
+pub use crate::fit::StitchMethod;
