@@ -109,9 +109,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         folders.push(Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/exemplars"));
     }
     println!(
-        "| exemplar | pieces | jumps | p99 of the exemplar (deg) | seam angle, 95 % (deg) | worst (deg) | jump ends over p99 | bending | width, 95 % | fallbacks | ms, first | ms, again |"
+        "| exemplar | pieces | jumps | p99 of the exemplar (deg) | seam angle, 95 % (deg) | worst (deg) | jump ends over p99 | bending | width, median | width, 95 % | fallbacks | ms, first | ms, again |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     let mut cases = Vec::new();
     let mut sums: [Measured; 2] = Default::default();
     for folder in &folders {
@@ -153,11 +153,12 @@ fn row(name: &str, pieces: usize, limit: Option<f64>, both: &mut [Measured]) {
     let worst = pair(&|m| format!("{:.1}", percentile(&mut m.angles, 1.0).to_degrees()));
     let over = pair(&|m| format!("{} of {}", m.over, m.angles.len()));
     let bending = pair(&|m| format!("{:+.1} %", 100.0 * (m.bent_energy / m.drawn_energy - 1.0)));
+    let median = pair(&|m| format!("{:.1} %", 100.0 * percentile(&mut m.width_changes, 0.5)));
     let width = pair(&|m| format!("{:.1} %", 100.0 * percentile(&mut m.width_changes, 0.95)));
     let first = pair(&|m| format!("{:.1}", m.first_ms));
     let again = pair(&|m| format!("{:.1}", m.again_ms));
     let fallbacks = both[1].fallbacks;
     println!(
-        "| {name} | {pieces} | {jumps} | {limit} | {angle} | {worst} | {over} | {bending} | {width} | {fallbacks} | {first} | {again} |"
+        "| {name} | {pieces} | {jumps} | {limit} | {angle} | {worst} | {over} | {bending} | {median} | {width} | {fallbacks} | {first} | {again} |"
     );
 }

@@ -51,8 +51,8 @@ fn cells(case: &Case) -> Result<[Pixmap; 3], Box<dyn Error>> {
         let piece = placed.pieces()[i];
         let Bent { chains, loops } = drawn(piece);
         for points in chains.iter().chain(&loops) {
-            let offset = DVec2::new(start, placed.targets(i).offset_mm);
-            let place = |p: &DVec2| DVec2::new(p.x * placed.stretch(), p.y) + offset;
+            let offset = placed.targets(i).offset_mm;
+            let place = |p: &DVec2| DVec2::new(start + p.x * placed.stretch(), banded(&warp, p.y + offset));
             cut.line(&points.iter().map(place).collect::<Vec<_>>(), INK, 1.6);
         }
         start += piece.width_mm * placed.stretch();
@@ -63,6 +63,11 @@ fn cells(case: &Case) -> Result<[Pixmap; 3], Box<dyn Error>> {
     }
     let [warp, lri] = filled;
     Ok([cut.finished(), warp.finished(), lri.finished()])
+}
+
+/// A height before the run was fitted to the band, after it.
+fn banded(outline: &Outline, y_mm: f64) -> f64 {
+    (y_mm + outline.lift_mm) * outline.squash
 }
 
 /// A window on a seam.
@@ -82,7 +87,7 @@ impl View {
         let angle = |k: &usize| right[*k].tangent.angle_to(left[*k].tangent).abs();
         let worst = (0..right.len()).max_by(|a, b| angle(a).total_cmp(&angle(b)));
         let height = worst.map_or(0.0, |k| placed.targets(seam).right[k].y_mm);
-        Ok(Self { picture, middle: DVec2::new(outline.seams[seam].u_mm, height) })
+        Ok(Self { picture, middle: DVec2::new(outline.seams[seam].u_mm, banded(outline, height)) })
     }
 
     fn pixel(&self, p: DVec2) -> (f32, f32) {

@@ -23,9 +23,9 @@ const LONGEST_EDGE: f64 = 1.0 / 48.0;
 const LEAST_LENGTH: f64 = 1e-3;
 /// The weight of links across ink, against 1 along a contour. More, and strands are stiffer across than along, so
 /// that a change of thickness happens at once, as a bump; less, and the sides of a strand part.
-const ACROSS_INK: f64 = 0.03;
+const ACROSS_INK: f64 = 0.1;
 /// The weight of links across gaps. More, and a strand drags its neighbour along; less, and they may meet.
-const ACROSS_GAP: f64 = 0.01;
+const ACROSS_GAP: f64 = 0.03;
 /// A chord between nodes of one contour is a link only if it is shorter than this part of the way along.
 const SHORT_CUT: f64 = 0.7;
 

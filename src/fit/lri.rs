@@ -26,7 +26,7 @@ use crate::pieces::{Chain, End, Endpoint, Piece};
 
 /// The length ℓ below which contours may shear and stretch, as a part of the piece's width. Larger, and tangents do
 /// not arrive; smaller, and thin strands stiffen where their width has to change.
-const SLACK: f64 = 0.05;
+const SLACK: f64 = 0.1;
 /// Parts into which an edge is divided at most, as it bends.
 const MOST_PARTS: f64 = 64.0;
 

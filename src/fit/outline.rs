@@ -55,6 +55,8 @@ pub struct Outline {
     pub method: StitchMethod,
     /// What the lengths of the pieces were multiplied by.
     pub stretch: f64,
+    /// How far up the run was moved before that, so that it lies in the middle of the band, in millimetres.
+    pub lift_mm: f64,
     /// What heights were multiplied by, so that the run fits the band; at most 1.
     pub squash: f64,
 }
@@ -90,8 +92,15 @@ impl Outline {
             .collect();
         let contours = placed.link(&bent, options);
         let seams = placed.seams(&bent, &fallbacks);
-        let mut outline =
-            Self { contours, seams, fallbacks, method: options.stitch, stretch: placed.stretch, squash: 1.0 };
+        let mut outline = Self {
+            contours,
+            seams,
+            fallbacks,
+            method: options.stitch,
+            stretch: placed.stretch,
+            squash: 1.0,
+            lift_mm: 0.0,
+        };
         outline.fit_height(options.height_mm);
         Ok(outline)
     }
@@ -111,9 +120,9 @@ impl Outline {
             return;
         }
         self.squash = (height_mm / (high - low)).min(1.0);
-        let middle = (low + high) / 2.0;
+        self.lift_mm = -(low + high) / 2.0;
         for point in self.contours.iter_mut().flat_map(|c| &mut c.points) {
-            point.y = (point.y - middle) * self.squash;
+            point.y = (point.y + self.lift_mm) * self.squash;
         }
     }
 }
