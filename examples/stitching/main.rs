@@ -30,6 +30,9 @@ const SCALE_MM: f64 = HEIGHT_MM / 100.0;
 const CHORD_MM: f64 = Tolerances::DEFAULT_CHORD_MM;
 const METHODS: [StitchMethod; 2] = [StitchMethod::Warp, StitchMethod::Lri];
 
+/// Where two figures stand in a cell, the first is the warp's.
+const HEAD: &str = "| exemplar | pieces | jumps | p99 | turn, 95 % | worst | over p99 | kink, 90 % | bending | width, median | 95 % | thinnest, 1 % | fell back | ms | ms again |";
+
 /// One exemplar with the run that was synthesized from it.
 struct Case {
     name: String,
@@ -108,10 +111,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     if folders.is_empty() {
         folders.push(Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/exemplars"));
     }
-    println!(
-        "| exemplar | pieces | jumps | p99 of the exemplar (deg) | seam angle, 95 % (deg) | worst (deg) | jump ends over p99 | bending | width, median | width, 95 % | fallbacks | ms, first | ms, again |"
-    );
-    println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|");
+    println!("{HEAD}");
+    println!("{}", HEAD.split('|').skip(1).map(|_| "|").collect::<Vec<_>>().join("---"));
     let mut cases = Vec::new();
     let mut sums: [Measured; 2] = Default::default();
     for folder in &folders {
@@ -121,8 +122,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         files.sort();
         for file in &files {
             let case = Case::new(file).map_err(|e| format!("{}: {e}", file.display()))?;
-            let mut own = turnings(&case.region, SCALE_MM);
-            let limit = percentile(&mut own, 0.99);
+            let own = turnings(&case.region, SCALE_MM);
+            let limit = percentile(&own, 0.99);
             let mut both = Vec::new();
             for (method, sum) in METHODS.into_iter().zip(&mut sums) {
                 let mut measured = case.measured(method)?;
@@ -130,35 +131,37 @@ fn main() -> Result<(), Box<dyn Error>> {
                 sum.add(&measured);
                 both.push(measured);
             }
-            row(&case.name, case.sequence.len(), Some(limit), &mut both);
+            row(&case.name, case.sequence.len(), Some(limit), &both);
             cases.push(case);
         }
     }
     let pieces = cases.iter().map(|case| case.sequence.len()).sum();
-    row("**all**", pieces, None, &mut sums);
+    row("**all**", pieces, None, &sums);
     if let Some(file) = pictures {
         std::fs::write(file, picture::sheet(&cases)?)?;
     }
     Ok(())
 }
 
-fn row(name: &str, pieces: usize, limit: Option<f64>, both: &mut [Measured]) {
-    let jumps = both[0].jumps;
-    let limit = limit.map_or(String::new(), |limit| format!("{:.1}", limit.to_degrees()));
-    let mut pair = |of: &dyn Fn(&mut Measured) -> String| {
-        let values: Vec<String> = both.iter_mut().map(of).collect();
-        values.join(", ")
-    };
-    let angle = pair(&|m| format!("{:.1}", percentile(&mut m.angles, 0.95).to_degrees()));
-    let worst = pair(&|m| format!("{:.1}", percentile(&mut m.angles, 1.0).to_degrees()));
-    let over = pair(&|m| format!("{} of {}", m.over, m.angles.len()));
-    let bending = pair(&|m| format!("{:+.1} %", 100.0 * (m.bent_energy / m.drawn_energy - 1.0)));
-    let median = pair(&|m| format!("{:.1} %", 100.0 * percentile(&mut m.width_changes, 0.5)));
-    let width = pair(&|m| format!("{:.1} %", 100.0 * percentile(&mut m.width_changes, 0.95)));
-    let first = pair(&|m| format!("{:.1}", m.first_ms));
-    let again = pair(&|m| format!("{:.1}", m.again_ms));
-    let fallbacks = both[1].fallbacks;
-    println!(
-        "| {name} | {pieces} | {jumps} | {limit} | {angle} | {worst} | {over} | {bending} | {median} | {width} | {fallbacks} | {first} | {again} |"
-    );
+fn row(name: &str, pieces: usize, limit: Option<f64>, both: &[Measured]) {
+    let degrees = |radians: f64| format!("{:.1}", radians.to_degrees());
+    let percent = |part: f64| format!("{:.1} %", 100.0 * part);
+    let changes = |m: &Measured| -> Vec<f64> { m.widths.iter().map(|w| (w - 1.0).abs()).collect() };
+    let cells: [&dyn Fn(&Measured) -> String; 10] = [
+        &|m| degrees(percentile(&m.angles, 0.95)),
+        &|m| degrees(percentile(&m.angles, 1.0)),
+        &|m| format!("{} of {}", m.over, m.angles.len()),
+        &|m| degrees(percentile(&m.kinks, 0.9)),
+        &|m| format!("{:+.1} %", 100.0 * (m.bent_energy / m.drawn_energy - 1.0)),
+        &|m| percent(percentile(&changes(m), 0.5)),
+        &|m| percent(percentile(&changes(m), 0.95)),
+        &|m| percent(percentile(&m.widths, 0.01)),
+        &|m| format!("{:.1}", m.first_ms),
+        &|m| format!("{:.1}", m.again_ms),
+    ];
+    let mut cells: Vec<String> =
+        cells.iter().map(|cell| both.iter().map(cell).collect::<Vec<_>>().join(", ")).collect();
+    cells.insert(8, both[1].fallbacks.to_string());
+    let limit = limit.map_or(String::new(), degrees);
+    println!("| {name} | {pieces} | {} | {limit} | {} |", both[0].jumps, cells.join(" | "));
 }

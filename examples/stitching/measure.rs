@@ -18,8 +18,10 @@ pub struct Measured {
     pub drawn_energy: f64,
     /// The same after bending.
     pub bent_energy: f64,
-    /// |w' / w − 1| of the thickness w of strands, in samples along the contours of these pieces.
-    pub width_changes: Vec<f64>,
+    /// w' / w of the thickness w of strands, in samples along the contours of these pieces.
+    pub widths: Vec<f64>,
+    /// The angle between the last edges on the two sides of these seams, greatest of each seam, in radians.
+    pub kinks: Vec<f64>,
     /// Pieces that were warped instead.
     pub fallbacks: usize,
     /// Time for all pieces of the run, with nothing prepared.
@@ -38,9 +40,10 @@ impl Measured {
         let pieces = placed.pieces();
         let n = pieces.len();
         let mut beside_jump = vec![false; n];
-        for (i, _) in seams.iter().enumerate().filter(|(_, seam)| !seam.is_natural) {
+        for (i, seam) in seams.iter().enumerate().filter(|(_, seam)| !seam.is_natural) {
             let j = (i + 1) % n;
             measured.jumps += 1;
+            measured.kinks.push(seam.after_deg.to_radians());
             (beside_jump[i], beside_jump[j]) = (true, true);
             for k in 0..pieces[i].right.len() {
                 let before = inward(pieces[i], &bent[i], End::Right(k), scale_mm, placed.stretch());
@@ -56,8 +59,7 @@ impl Measured {
                 measured.bent_energy += energy(after, *closed, scale_mm);
             }
             let (was, is) = (thicknesses(&drawn), thicknesses(&bent));
-            let changes = was.iter().zip(&is).filter_map(|(was, is)| Some((((*is)? / (*was)?) - 1.0).abs()));
-            measured.width_changes.extend(changes);
+            measured.widths.extend(was.iter().zip(&is).filter_map(|(was, is)| Some((*is)? / (*was)?)));
         }
         measured
     }
@@ -69,7 +71,8 @@ impl Measured {
         self.over += other.over;
         self.drawn_energy += other.drawn_energy;
         self.bent_energy += other.bent_energy;
-        self.width_changes.extend(&other.width_changes);
+        self.widths.extend(&other.widths);
+        self.kinks.extend(&other.kinks);
         self.fallbacks += other.fallbacks;
         self.first_ms += other.first_ms;
         self.again_ms += other.again_ms;
@@ -77,7 +80,8 @@ impl Measured {
 }
 
 /// The value below which a part of `values` lies; 0 without any.
-pub fn percentile(values: &mut [f64], part: f64) -> f64 {
+pub fn percentile(values: &[f64], part: f64) -> f64 {
+    let mut values = values.to_vec();
     values.sort_by(f64::total_cmp);
     let last = values.len().saturating_sub(1);
     values.get((last as f64 * part).round() as usize).copied().unwrap_or_default()

@@ -47,7 +47,10 @@ pub(super) struct Links {
     pub(super) chains: Vec<Range<usize>>,
     /// The nodes of each loop; the last is followed by the first.
     pub(super) loops: Vec<Range<usize>>,
-    pub(super) links: Vec<Link>,
+    /// Links along the contours.
+    pub(super) along: Vec<Link>,
+    /// Links from one contour to another, or across a bend of one.
+    pub(super) across: Vec<Link>,
 }
 
 impl Links {
@@ -56,7 +59,13 @@ impl Links {
         let low = all().copied().reduce(DVec2::min).unwrap_or_default();
         let high = all().copied().reduce(DVec2::max).unwrap_or_default();
         let longest = LONGEST_EDGE * (high - low).element_sum();
-        let mut found = Self { nodes: Vec::new(), chains: Vec::new(), loops: Vec::new(), links: Vec::new() };
+        let mut found = Self {
+            nodes: Vec::new(),
+            chains: Vec::new(),
+            loops: Vec::new(),
+            along: Vec::new(),
+            across: Vec::new(),
+        };
         for chain in &piece.chains {
             let row = found.row(&chain.points, longest);
             found.chains.push(row);
@@ -101,25 +110,25 @@ impl Links {
             join(row.end - 1, row.start);
         }
         let length = |a: usize, b: usize| self.nodes[a].distance(self.nodes[b]).max(least);
-        let mut links: Vec<Link> = (0..n)
+        let along = (0..n)
             .filter(|&a| after[a] != a)
             .map(|a| Link { from: a, to: after[a], weight: 1.0 / length(a, after[a]) })
             .collect();
         // The stretch of contour that a node stands for.
         let share = |a: usize| (length(before[a], a) + length(a, after[a])) / 2.0;
-        let across = self.across(&before, &after);
-        links.extend(across.into_iter().map(|(a, b, is_ink)| {
+        let neighbours = self.neighbours(&before, &after);
+        let across = neighbours.into_iter().map(|(a, b, is_ink)| {
             let strength = if is_ink { ACROSS_INK } else { ACROSS_GAP };
             let width = length(a, b);
             // What is nearer than its nodes are to each other is no nearer for them.
             let near = width.max(share(a).min(share(b)));
             Link { from: a, to: b, weight: strength * share(a).min(share(b)) / (near * near) }
-        }));
-        self.links = links;
+        });
+        (self.along, self.across) = (along, across.collect());
     }
 
     /// Pairs of neighbours that lie across ink or a gap from each other, and which of the two.
-    fn across(&self, before: &[usize], after: &[usize]) -> Vec<(usize, usize, bool)> {
+    fn neighbours(&self, before: &[usize], after: &[usize]) -> Vec<(usize, usize, bool)> {
         let points = self.nodes.iter().map(|p| Point2::new(p.x, p.y)).collect();
         let Ok(mesh) = DelaunayTriangulation::<Point2<f64>>::bulk_load_stable(points) else {
             return Vec::new();

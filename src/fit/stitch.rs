@@ -50,9 +50,9 @@ pub trait Stitch {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum StitchMethod {
     /// The strip warp: cannot break the topology, whatever it bends.
-    #[default]
     Warp,
     /// Linear rotation-invariant deformation (Zhou 2014 §4.2), and the warp for pieces that do not survive it.
+    #[default]
     Lri,
 }
 
