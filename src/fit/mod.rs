@@ -16,6 +16,8 @@ mod lri;
 mod offsets;
 mod outline;
 mod placed;
+#[cfg(test)]
+mod sample_pieces;
 mod sound;
 mod stitch;
 mod warp;

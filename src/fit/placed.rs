@@ -246,3 +246,54 @@ impl Joint {
         Self { targets, before_deg: before.to_degrees(), is_natural }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample_pieces::{targets_of, turned, two_strands};
+    use super::*;
+
+    /// Three times the same piece, the middle one with these targets.
+    fn run<'a>(piece: &'a Piece, left: Vec<SideTarget>, right: Vec<SideTarget>) -> Placed<'a> {
+        let joint = |targets| Joint { targets, before_deg: 0.0, is_natural: false };
+        Placed {
+            sequence: &[0, 0, 0],
+            pieces: vec![piece; 3],
+            starts_mm: vec![0.0, 4.0, 8.0],
+            offsets: vec![0.0; 3],
+            joints: vec![joint(left), joint(right)],
+            stretch: 1.0,
+            is_ring: false,
+        }
+    }
+
+    #[test]
+    fn strands_that_would_cross_are_warped() {
+        let piece = two_strands();
+        let (left, right) = targets_of(&piece);
+        // The upper strand sets out and arrives steeply below itself, the lower one above.
+        let towards = |side: &[SideTarget], angle: f64| {
+            [turned(&side[..2], -angle, 0.0), turned(&side[2..], angle, 0.0)].concat()
+        };
+        let placed = run(&piece, towards(&left, 1.2), towards(&right, -1.2));
+        let mut prepared = Prepared::new();
+        let (bent, fault) = placed.bend(1, StitchMethod::Lri, &mut prepared, 1e-3);
+        assert!(matches!(fault, Some(Unsound::Meets { .. })), "{fault:?}");
+        let (warped, none) = placed.bend(1, StitchMethod::Warp, &mut prepared, 1e-3);
+        assert_eq!((bent, none), (warped.clone(), None));
+        assert_eq!(Soundness::of(&piece).check(&piece, &warped), Ok(()));
+    }
+
+    #[test]
+    fn gentle_targets_are_met_without_the_warp() {
+        let piece = two_strands();
+        let (left, right) = targets_of(&piece);
+        let placed = run(&piece, turned(&left, 0.3, 0.2), right);
+        let mut prepared = Prepared::new();
+        assert!(prepared.is_empty());
+        let (once, fault) = placed.bend(1, StitchMethod::Lri, &mut prepared, 1e-3);
+        assert_eq!((fault, prepared.len()), (None, 1));
+        // What is prepared is used again, and changes nothing.
+        let (again, _) = placed.bend(1, StitchMethod::Lri, &mut prepared, 1e-3);
+        assert_eq!((again, prepared.len()), (once, 1));
+    }
+}

@@ -139,3 +139,58 @@ fn nesting(piece: &Piece, bent: &Bent) -> Result<Nesting, Unsound> {
     nesting.sort_unstable();
     Ok(nesting)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample_pieces::crossing_strand;
+    use super::*;
+
+    /// What is found when the strand with a hole and an island is bent by `bend`, which gets its chains (below and
+    /// above) and its loops (hole and island).
+    fn verdict(bend: impl Fn(&mut Bent)) -> Result<(), Unsound> {
+        let piece = crossing_strand();
+        let chains = piece.chains.iter().map(|c| c.points.clone()).collect();
+        let mut bent = Bent { chains, loops: piece.loops.clone() };
+        bend(&mut bent);
+        Soundness::of(&piece).check(&piece, &bent)
+    }
+
+    #[test]
+    fn what_is_only_bent_is_sound() {
+        assert_eq!(verdict(|_| {}), Ok(()));
+        assert_eq!(
+            verdict(|bent| bent.chains.iter_mut().chain(&mut bent.loops).flatten().for_each(|p| p.y += p.x)),
+            Ok(())
+        );
+    }
+
+    #[test]
+    fn contours_that_cross_or_touch_are_found() {
+        let crossed = verdict(|bent| bent.chains[0][2].y = 1.0);
+        assert!(matches!(crossed, Err(Unsound::Meets { .. })), "{crossed:?}");
+        // The island's lowest vertex on the strand's upper contour.
+        let touched = verdict(|bent| bent.loops[1][1] = bent.chains[1][2]);
+        assert!(matches!(touched, Err(Unsound::Meets { .. })), "{touched:?}");
+    }
+
+    #[test]
+    fn the_strip_ends_at_its_cuts() {
+        let left = verdict(|bent| bent.chains[0][1].x = -1e-6);
+        assert!(matches!(left, Err(Unsound::Leaves { .. })), "{left:?}");
+        let on_cut = verdict(|bent| bent.chains[1][1].x = 4.0);
+        assert!(matches!(on_cut, Err(Unsound::Leaves { .. })), "{on_cut:?}");
+    }
+
+    #[test]
+    fn loops_that_turn_over_or_move_out_are_found() {
+        let turned = verdict(|bent| bent.loops[1].reverse());
+        assert!(matches!(turned, Err(Unsound::Turned { .. })), "{turned:?}");
+        let swapped = verdict(|bent| {
+            bent.loops[0].iter_mut().for_each(|p| p.y += 1.5);
+            bent.loops[1]
+                .iter_mut()
+                .for_each(|p| *p = (*p - DVec2::new(2.0, 1.5)) * 3.0 + DVec2::new(2.0, 1.5));
+        });
+        assert!(matches!(swapped, Err(Unsound::Turned { .. })), "a hole in the island: {swapped:?}");
+    }
+}
