@@ -90,8 +90,13 @@ fn solve(catalogue: &Catalogue, shape: Shape, length_mm: f64) -> Plan {
 }
 
 fn fit(catalogue: &Catalogue, plan: &Plan, length_mm: f64) -> Outline {
-    let options =
-        FitOptions { length_mm, height_mm: HEIGHT_MM, is_ring: true, chord_mm: 0.125 * CHORD_MM, stitch };
+    let options = FitOptions {
+        length_mm,
+        height_mm: HEIGHT_MM,
+        is_ring: true,
+        chord_mm: 0.125 * CHORD_MM,
+        stitch: StitchMethod::default(),
+    };
     Outline::new(catalogue, &plan.sequence, &options).expect("a plan is a run of the catalogue")
 }
 
