@@ -6,7 +6,7 @@ use clap::{Args, Parser, Subcommand};
 
 use super::values;
 use crate::domain::CurveSpec;
-use crate::job::{KeptRange, SlicingChoice};
+use crate::job::{KeptRange, SlicingChoice, StitchMethod};
 
 /// Ornament that can be made: new pattern from one SVG ornament, with exactly the components and holes you ask
 /// for, written as a part and counted again on the file.
@@ -121,6 +121,9 @@ pub(super) struct BandArguments {
     /// Cost of a jump: more keeps longer runs of the exemplar, 0 allows short cycles
     #[arg(long, value_name = "LAMBDA", default_value_t = 1.0, allow_negative_numbers = true)]
     pub(super) jump_cost: f64,
+    /// How pieces are bent to meet: warp, or lri (linear rotation-invariant deformation)
+    #[arg(long, value_name = "METHOD", value_parser = values::stitch, default_value_t)]
+    pub(super) stitch: StitchMethod,
     /// Thickness of the solid
     #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "2mm", allow_hyphen_values = true)]
     pub(super) thickness: f64,

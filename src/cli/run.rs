@@ -123,6 +123,7 @@ fn builder(a: &BandArguments) -> BandBuilder {
         .variety(a.variety)
         .alpha(a.alpha)
         .jump_cost(a.jump_cost)
+        .stitch(a.stitch)
         .thickness_mm(a.thickness)
         .chord_mm(a.tolerances.chord)
         .min_feature_mm(a.tolerances.min_feature.unwrap_or(0.0))

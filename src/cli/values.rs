@@ -1,7 +1,7 @@
 //! Values of options as they are typed.
 
 use crate::domain::{CurveSpec, parse_length_mm};
-use crate::job::{KeptRange, SlicingChoice, Wanted, WantedError};
+use crate::job::{KeptRange, SlicingChoice, StitchMethod, Wanted, WantedError};
 
 /// A length in millimetres: `12mm`, `1.2cm`, `0.5in`, `34pt`, `45px` or `12`.
 pub(super) fn length(text: &str) -> Result<f64, String> {
@@ -55,6 +55,11 @@ pub(super) fn kept(text: &str) -> Result<KeptRange, String> {
     Ok(KeptRange { from_mm, to_mm })
 }
 
+/// `warp` or `lri`.
+pub(super) fn stitch(text: &str) -> Result<StitchMethod, String> {
+    text.parse()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -69,10 +74,12 @@ mod tests {
     }
 
     #[test]
-    fn slicing_is_read_and_taught() {
+    fn choices_are_read_and_taught() {
         assert_eq!(slicing("reeb"), Ok(SlicingChoice::Reeb));
         assert_eq!(slicing("reeb:1cm"), Ok(SlicingChoice::Persistence(10.0)));
         assert_eq!(slicing("uniform:12"), Ok(SlicingChoice::Uniform(12)));
+        assert_eq!((stitch("warp"), stitch("lri")), (Ok(StitchMethod::Warp), Ok(StitchMethod::Lri)));
+        assert!(stitch("glue").unwrap_err().contains("use warp"));
         for wrong in ["uniform", "uniform:0", "uniform:x", "rebe", ""] {
             assert!(slicing(wrong).unwrap_err().contains("use reeb"), "{wrong}");
         }

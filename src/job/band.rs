@@ -10,13 +10,15 @@ use super::output::{Format, Output, Pending, Target, persist};
 use super::part::{Part, PartError};
 use super::plan::{Plan, PlanError, PlanOptions, plan};
 use super::refusal;
-use super::report::{BandReport, DroppedCutReport, InputReport, SeamReport, StageTime};
+use super::report::{
+    BandReport, DroppedCutReport, FallbackReport, InputReport, SeamReport, StageTime, StitchReport,
+};
 use super::stage::{Clock, Stage};
 use crate::domain::{BandMap, CurveSpec, PlanarCurve};
 use crate::exemplar::{Exemplar, Limits, ReadOptions, read_path};
 use crate::export::{self, SvgDocument, SvgOptions};
 use crate::fabricate;
-use crate::fit::{FitOptions, Outline};
+use crate::fit::{FitOptions, Outline, Prepared, StitchMethod};
 use crate::pieces::{Catalogue, CostWeights};
 use crate::planar::Region;
 use crate::reeb::{ReebGraph, Slicing, SlicingRule};
@@ -351,15 +353,24 @@ fn make_part(
     clock: &mut Clock<'_>,
 ) -> Result<(Part, Outline), JobError> {
     let mut last = None;
-    for share in CHORD_TRIES {
+    let mut prepared = Prepared::new();
+    // What no chord error can help is warped after all.
+    let methods: &[StitchMethod] = match job.options.stitch {
+        StitchMethod::Lri => &[StitchMethod::Lri, StitchMethod::Warp],
+        StitchMethod::Warp => &[StitchMethod::Warp],
+    };
+    let tries = methods.iter().flat_map(|&stitch| CHORD_TRIES.map(|share| (stitch, share)));
+    for (stitch, share) in tries {
         let chord_mm = job.tolerances.chord_mm() * share;
         let fit = FitOptions {
             length_mm: map.curve().length_mm(),
             height_mm: cut.height_mm,
             is_ring: map.curve().is_closed(),
             chord_mm: chord_mm * FIT_SHARE,
+            stitch,
         };
-        let outline = clock.time(Stage::Fit, || Outline::new(&cut.catalogue, &plan.sequence, &fit))?;
+        let outline = clock
+            .time(Stage::Fit, || Outline::prepared(&cut.catalogue, &plan.sequence, &fit, &mut prepared))?;
         match clock.time(Stage::Map, || Part::new(&outline, map, planned, chord_mm * MAP_SHARE)) {
             Ok(part) => return Ok((part, outline)),
             Err(PartError::Job(error)) => return Err(error),
@@ -416,6 +427,19 @@ fn describe(
             job.tolerances.chord_mm().powi(2),
             first.x,
             first.y
+        ));
+    }
+    if outline.method != options.stitch {
+        notes.push(
+            "the whole band was stitched by --stitch warp, as rotation-invariant deformation made contours meet between its pieces"
+                .to_owned(),
+        );
+    }
+    if !outline.fallbacks.is_empty() {
+        notes.push(format!(
+            "{} of {} pieces were warped, as rotation-invariant deformation would have broken them",
+            outline.fallbacks.len(),
+            plan.sequence.len()
         ));
     }
     if let Some(note) = dropped_note(&cut.slicing) {
@@ -503,6 +527,7 @@ fn describe(
             worst_angle_before_deg: worst(|s| s.before_deg),
             worst_angle_after_deg: worst(|s| s.after_deg),
         },
+        stitching: stitching(outline),
         search_labels: plan.labels,
         search_states: plan.states,
         min_feature: None,
@@ -525,5 +550,18 @@ fn describe(
         ),
         notes,
         times,
+    }
+}
+
+fn stitching(outline: &Outline) -> StitchReport {
+    let fallbacks = outline.fallbacks.iter().map(|f| FallbackReport {
+        place: f.place,
+        piece: f.piece,
+        fault: f.fault.to_string(),
+    });
+    StitchReport {
+        method: outline.method.to_string(),
+        fallbacks: fallbacks.collect(),
+        fallback_seams: (0..outline.seams.len()).filter(|&i| outline.seams[i].fell_back).collect(),
     }
 }

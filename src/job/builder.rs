@@ -7,6 +7,7 @@ use super::error::JobError;
 use super::output::{Output, Target};
 use super::stage::Stage;
 use crate::domain::CurveSpec;
+use crate::fit::StitchMethod;
 use crate::pieces::CostWeights;
 use crate::planar::Tolerances;
 use crate::reeb::KeptRange;
@@ -40,6 +41,7 @@ pub struct BandBuilder {
     pub(super) weights: CostWeights,
     pub(super) thickness_mm: f64,
     pub(super) round_mm: Option<f64>,
+    pub(super) stitch: StitchMethod,
     chord_mm: f64,
     min_feature_mm: f64,
     min_gap_mm: f64,
@@ -64,6 +66,7 @@ impl BandBuilder {
             weights: CostWeights::default(),
             thickness_mm: DEFAULT_THICKNESS_MM,
             round_mm: None,
+            stitch: StitchMethod::default(),
             chord_mm: Tolerances::DEFAULT_CHORD_MM,
             min_feature_mm: 0.0,
             min_gap_mm: 0.0,
@@ -164,6 +167,12 @@ impl BandBuilder {
     /// The radius to which corners of the curve are rounded; without one, a corner is an error.
     pub fn round_mm(mut self, radius_mm: f64) -> Self {
         self.round_mm = Some(radius_mm);
+        self
+    }
+
+    /// How pieces are bent to meet.
+    pub fn stitch(mut self, stitch: StitchMethod) -> Self {
+        self.stitch = stitch;
         self
     }
 

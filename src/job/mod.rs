@@ -46,7 +46,10 @@ pub use error::{JobError, OutlineFault};
 pub use extrude::{ExtrudeReport, extrude};
 pub use output::{Format, Output, Target};
 pub use plan::{Plan, PlanError, PlanOptions, plan};
-pub use report::{BandReport, DroppedCutReport, InputReport, SeamReport, StageTime};
+pub use report::{
+    BandReport, DroppedCutReport, FallbackReport, InputReport, SeamReport, StageTime, StitchReport,
+};
 pub use stage::Stage;
 
+pub use crate::fit::StitchMethod;
 pub use crate::topology::{Wanted, WantedError};

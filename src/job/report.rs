@@ -38,6 +38,28 @@ pub struct DroppedCutReport {
     pub portal_mm: f64,
 }
 
+/// How pieces were bent to meet.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StitchReport {
+    /// `warp` or `lri`: what the band was made with.
+    pub method: String,
+    /// Pieces that `lri` would have broken, and that were warped instead.
+    pub fallbacks: Vec<FallbackReport>,
+    /// The seams beside such pieces, by their number from 0 along the band.
+    pub fallback_seams: Vec<usize>,
+}
+
+/// A piece that was warped instead.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FallbackReport {
+    /// Its place in the sequence, from 0.
+    pub place: usize,
+    /// Its number in the exemplar, from 0.
+    pub piece: usize,
+    /// What would have been wrong.
+    pub fault: String,
+}
+
 /// How long a stage took.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct StageTime {
@@ -116,6 +138,8 @@ pub struct BandReport {
     pub squeezes: Vec<Squeeze>,
     /// The seams.
     pub seams: SeamReport,
+    /// How the pieces were bent to meet at the seams.
+    pub stitching: StitchReport,
     /// Partial runs that the search made.
     pub search_labels: usize,
     /// States of the automaton that it met.
