@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use openwork::pieces::{Catalogue, CostWeights};
 use openwork::planar::{FillRule, Grid, GridPoint, Region, Tolerances};
 use openwork::reeb::{ReebGraph, Slicing, SlicingRule};
-use openwork::solver::{Problem, Refusal, Step, Unsolved, explain, solve};
+use openwork::solver::{Census, Problem, Random, Refusal, Step, Unsolved, best, canonical, explain, solve};
 use openwork::topology::{Descriptor, Goal, Shape, Topology, Wanted};
 use proptest::prelude::*;
 
@@ -63,6 +63,7 @@ fn problem<'a>(pieces: &'a Pieces, request: &Request) -> Problem<'a> {
 /// A sequence that may be made, of whatever topology.
 #[derive(Debug, Clone, PartialEq)]
 struct Made {
+    sequence: Vec<usize>,
     length: u32,
     cost: u64,
     topology: Topology,
@@ -93,7 +94,7 @@ fn make(problem: &Problem<'_>, sequence: &[usize]) -> Option<Made> {
         }
     };
     let length = sequence.iter().map(|&p| problem.widths[p]).sum();
-    Some(Made { length, cost: problem.cost_of(sequence)?, topology, is_in_band })
+    Some(Made { sequence: sequence.to_vec(), length, cost: problem.cost_of(sequence)?, topology, is_in_band })
 }
 
 /// Everything that can be made up to `longest`; `None` when that is too much.
@@ -128,6 +129,7 @@ fn check(pieces: &Pieces, request: &Request) -> Result<bool, TestCaseError> {
         let admitted =
             |m: &Made| problem.window.contains(&m.length) && m.is_in_band && goal.admits(m.topology);
         let least = all.iter().filter(|m| admitted(m)).map(|m| m.cost).min();
+        check_all(&problem, goal, all.iter().filter(|m| admitted(m)).collect())?;
         match solve(&problem, goal) {
             Ok(solution) => {
                 let Some(least) = least else {
@@ -163,6 +165,31 @@ fn check(pieces: &Pieces, request: &Request) -> Result<bool, TestCaseError> {
         }
     }
     Ok(true)
+}
+
+/// How many of the cheapest are listed.
+const LISTED: usize = 6;
+
+/// That the number of sequences, the cheapest ones, and what is drawn at random are those of the enumeration.
+fn check_all(problem: &Problem<'_>, goal: Goal, admitted: Vec<&Made>) -> Result<(), TestCaseError> {
+    let mut census = Census::new(problem, goal, f64::INFINITY).expect("small cases have a census");
+    prop_assert_eq!(census.ln_total().exp().round() as usize, admitted.len(), "{:?}", goal);
+    let drawn = census.draw(&mut Random::new(7));
+    prop_assert_eq!(drawn.is_some(), !admitted.is_empty());
+    if let Some(drawn) = drawn {
+        prop_assert!(admitted.iter().any(|m| m.sequence == drawn), "{:?} drew {:?}", goal, drawn);
+    }
+    // Of the openings of one ring all cost the same.
+    let rings: BTreeSet<(u64, Vec<usize>)> =
+        admitted.iter().map(|m| (m.cost, canonical(&m.sequence, problem.shape))).collect();
+    let cheapest: Vec<u64> = rings.iter().map(|(cost, _)| *cost).take(LISTED).collect();
+    let listed = best(problem, goal, LISTED).unwrap_or_default();
+    prop_assert_eq!(listed.iter().map(|s| s.cost).collect::<Vec<_>>(), cheapest, "{:?}", goal);
+    let distinct: BTreeSet<Vec<usize>> =
+        listed.iter().map(|s| canonical(&s.sequence, problem.shape)).collect();
+    prop_assert_eq!(distinct.len(), listed.len());
+    prop_assert!(listed.iter().all(|s| admitted.iter().any(|m| m.sequence == s.sequence)));
+    Ok(())
 }
 
 /// That a refusal is true, by its documentation.
@@ -311,7 +338,56 @@ fn drawn_pieces() -> impl Strategy<Value = Pieces> {
     })
 }
 
+/// Pieces a, b, c that may follow each other in any way at costs that differ, as an open run.
+fn three_pieces() -> Pieces {
+    let ends = |left: &[u32], right: &[u32]| Descriptor::new(left, right, 0, 1);
+    let descriptors = vec![ends(&[], &[0]), ends(&[0], &[0]), ends(&[0], &[0]), ends(&[0], &[])];
+    let step = |from: usize, to: usize| Step { to, cost: (from * 3 + to * 5) as u64 % 7 * 200_000, rise: 0 };
+    let steps = (0..4).map(|from| (1..4).filter(|_| from < 3).map(|to| step(from, to)).collect()).collect();
+    Pieces { descriptors, steps }
+}
+
+/// Sequences are drawn in proportion to exp(−cost/T): a chi-squared test with a fixed seed.
+#[test]
+fn drawn_sequences_have_their_frequencies() {
+    let pieces = three_pieces();
+    let request = Request {
+        shape: Shape::Open,
+        widths: vec![1, 1, 2, 1],
+        begin: vec![0; 4],
+        end: vec![0; 4],
+        window: (5, 8),
+        drift_limit: 1,
+        label_limit: 1_000_000,
+        goals: Vec::new(),
+    };
+    let problem = problem(&pieces, &request);
+    let all = enumerate(&problem, 8).expect("it is small");
+    let all: Vec<&Made> = all.iter().filter(|m| problem.window.contains(&m.length)).collect();
+    let temperature = 0.7;
+    let weight = |m: &Made| (-(m.cost as f64) / 1e6 / temperature).exp();
+    let total: f64 = all.iter().map(|m| weight(m)).sum();
+    let mut census = Census::new(&problem, Goal::default(), temperature).expect("it is small");
+    assert!((census.ln_total() - total.ln()).abs() < 1e-9);
+    const DRAWS: usize = 20_000;
+    let mut random = Random::new(2014);
+    let mut met = vec![0usize; all.len()];
+    for _ in 0..DRAWS {
+        let drawn = census.draw(&mut random).expect("there are sequences");
+        met[all.iter().position(|m| m.sequence == drawn).expect("only what there is is drawn")] += 1;
+    }
+    let expected = |m: &Made| weight(m) / total * DRAWS as f64;
+    let chi: f64 = all.iter().zip(&met).map(|(m, &n)| (n as f64 - expected(m)).powi(2) / expected(m)).sum();
+    let freedom = (all.len() - 1) as f64;
+    // The 99.9 % point by Wilson and Hilferty (1931).
+    let limit = freedom * (1.0 - 2.0 / (9.0 * freedom) + 3.09 * (2.0 / (9.0 * freedom)).sqrt()).powi(3);
+    assert!(all.len() > 10, "{} sequences are too few for a test", all.len());
+    assert!(chi < limit, "chi squared {chi:.1} of {freedom} degrees of freedom is over {limit:.1}");
+}
+
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1_200))]
+
     #[test]
     fn free_pieces_are_sequenced_as_well_as_by_enumeration(pieces in free_pieces(), request in request()) {
         let is_small = check(&pieces, &request)?;

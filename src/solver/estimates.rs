@@ -129,9 +129,23 @@ fn exact(
     scope: &Scope,
     by_drift: bool,
 ) -> Option<(Explored<(StateId, i32)>, Table<Cost>)> {
+    let mut explored = triples(problem, automaton, scope, by_drift, NODE_LIMIT)?;
+    let table = affordable(problem, std::mem::take(&mut explored.graph))?;
+    Some((explored, table))
+}
+
+/// All pairs of piece and state that runs reach, with the drift if asked for, which is 0 otherwise; `None` when they
+/// are more than `limit`.
+pub(super) fn triples(
+    problem: &Problem<'_>,
+    automaton: &mut Automaton<'_>,
+    scope: &Scope,
+    by_drift: bool,
+    limit: usize,
+) -> Option<Explored<(StateId, i32)>> {
     let starts = scope.starts.iter().filter_map(|&(p, _)| automaton.start(p).map(|s| (p, (s, 0))));
     let starts: Vec<(usize, (StateId, i32))> = starts.collect();
-    let mut explored = Explored::new(problem, starts, NODE_LIMIT, |piece, &(state, drift), joins| {
+    Explored::new(problem, starts, limit, |piece, &(state, drift), joins| {
         for step in problem.steps[piece].iter().filter(|s| scope.allowed[s.to]) {
             let drift = if by_drift { drift.saturating_add(step.rise) } else { 0 };
             if drift.saturating_abs() > problem.drift_limit {
@@ -142,9 +156,7 @@ fn exact(
             }
         }
         scope.stop[piece].filter(|_| automaton.accepts(state))
-    })?;
-    let table = affordable(problem, std::mem::take(&mut explored.graph))?;
-    Some((explored, table))
+    })
 }
 
 /// The pass over a graph, unless it would take too long.

@@ -12,6 +12,9 @@
 //!
 //! [`Automaton`]: crate::topology::Automaton
 
+mod best;
+mod big;
+mod census;
 mod cheapest;
 mod connectivity;
 mod counts;
@@ -23,12 +26,16 @@ mod labels;
 mod lengths;
 mod pass;
 mod problem;
+mod random;
 mod reach;
 mod table;
 mod variety;
 
+pub use best::{best, canonical};
+pub use census::Census;
 pub use explain::{Refusal, explain};
 pub use problem::{Cost, Problem, Solution, Step, Unsolved};
+pub use random::Random;
 pub use variety::{Variety, autocorrelation};
 
 use crate::topology::{Automaton, Goal};

@@ -1,0 +1,153 @@
+//! The k cheapest sequences, none twice.
+//!
+//! The pass over all triples of piece, state and drift gives the exact cost of the best completion of any run.
+//! Runs are extended in the order of it: the first to be complete is the cheapest sequence, the next the second
+//! cheapest, and so on. Rings that are rotations of each other are one.
+
+use std::cmp::Reverse;
+use std::collections::{BTreeSet, BinaryHeap};
+
+use super::estimates::{TABLE_BUDGET, triples};
+use super::family::families;
+use super::graph::{Explored, Scope};
+use super::problem::{Cost, Problem, Solution, Unsolved};
+use super::table::{NEVER, Table};
+use crate::topology::{Automaton, Goal, Shape, StateId};
+
+/// Nodes at which it is given up.
+const NODE_LIMIT: usize = 300_000;
+/// Runs at which it is given up.
+const MOST_RUNS: usize = 20_000_000;
+
+/// The `k` cheapest sequences that meet `goal`, or all if there are fewer, cheapest first.
+///
+/// # Errors
+/// [`Unsolved::Infeasible`] when there is none, [`Unsolved::TooLarge`] when there is too much to go through.
+pub fn best(problem: &Problem<'_>, goal: Goal, k: usize) -> Result<Vec<Solution>, Unsolved> {
+    let mut automaton = Automaton::new(problem.descriptors, goal, problem.shape);
+    let mut lists: Vec<Listing> = Vec::new();
+    let mut members: Vec<(Cost, Scope)> = families(problem, goal.closed_pattern)
+        .into_iter()
+        .flat_map(|family| family.members)
+        .map(|member| (member.estimate, member.scope))
+        .collect();
+    members.sort_by_key(|(estimate, scope)| (Reverse(*estimate), Reverse(scope.starts[0].0)));
+    let mut found: Vec<Solution> = Vec::new();
+    let mut seen: BTreeSet<Vec<usize>> = BTreeSet::new();
+    let mut runs = 0;
+    while found.len() < k {
+        let next = lists.iter().map(Listing::estimate).min().unwrap_or(NEVER);
+        // A member is opened when nothing cheaper is left.
+        if members.last().is_some_and(|(estimate, _)| *estimate <= next) {
+            let (_, scope) = members.pop().expect("there is a last member");
+            let list = Listing::new(problem, &mut automaton, scope);
+            lists.push(list.ok_or(Unsolved::TooLarge { labels: runs })?);
+            continue;
+        }
+        let Some(list) = lists.iter_mut().filter(|l| l.estimate() != NEVER).min_by_key(|l| l.estimate())
+        else {
+            break;
+        };
+        runs += 1;
+        if runs > MOST_RUNS {
+            return Err(Unsolved::TooLarge { labels: runs });
+        }
+        if let Some((cost, sequence)) = list.advance(problem)
+            && seen.insert(canonical(&sequence, problem.shape))
+        {
+            found.push(Solution { sequence, cost, gap: 0, labels: runs, states: automaton.len() });
+        }
+    }
+    if found.is_empty() { Err(Unsolved::Infeasible) } else { Ok(found) }
+}
+
+/// The same for all rotations of a ring.
+pub fn canonical(sequence: &[usize], shape: Shape) -> Vec<usize> {
+    let rotated = |by: usize| [&sequence[by..], &sequence[..by]].concat();
+    match shape {
+        Shape::Open => sequence.to_vec(),
+        Shape::Ring => (0..sequence.len()).map(rotated).min().unwrap_or_default(),
+    }
+}
+
+/// A run in a listing.
+struct Run {
+    node: u32,
+    length: u32,
+    cost: Cost,
+    parent: u32,
+}
+
+const NONE: u32 = u32::MAX;
+
+/// The sequences of one scope, cheapest first.
+struct Listing {
+    explored: Explored<(StateId, i32)>,
+    table: Table<Cost>,
+    runs: Vec<Run>,
+    /// By cost of the best completion; a run that stops here is marked.
+    open: BinaryHeap<(Reverse<Cost>, Reverse<u32>, bool)>,
+}
+
+impl Listing {
+    fn new(problem: &Problem<'_>, automaton: &mut Automaton<'_>, scope: Scope) -> Option<Self> {
+        let mut explored = triples(problem, automaton, &scope, true, NODE_LIMIT)?;
+        let graph = std::mem::take(&mut explored.graph);
+        let table = Table::new(graph, problem.window.clone(), 4 * TABLE_BUDGET, |cost| cost);
+        let mut list = Self { explored, table, runs: Vec::new(), open: BinaryHeap::new() };
+        for &(piece, cost) in &scope.starts {
+            let state = automaton.start(piece);
+            if let Some(node) = state.and_then(|state| list.explored.node(piece, (state, 0))) {
+                list.meet(Run { node: node as u32, length: problem.widths[piece], cost, parent: NONE });
+            }
+        }
+        Some(list)
+    }
+
+    /// What the cheapest sequence that is still to come costs.
+    fn estimate(&self) -> Cost {
+        self.open.peek().map_or(NEVER, |(Reverse(estimate), ..)| *estimate)
+    }
+
+    fn meet(&mut self, run: Run) {
+        self.table.load(run.length);
+        let rest = self.table.at(run.length, run.node as usize);
+        if rest != NEVER {
+            self.open.push((Reverse(run.cost + rest), Reverse(self.runs.len() as u32), false));
+            self.runs.push(run);
+        }
+    }
+
+    /// Goes one step on; a sequence if one is complete.
+    fn advance(&mut self, problem: &Problem<'_>) -> Option<(Cost, Vec<usize>)> {
+        let (Reverse(cost), Reverse(at), is_stopped) = self.open.pop()?;
+        if is_stopped {
+            let mut sequence = Vec::new();
+            let mut next = at;
+            while let Some(run) = self.runs.get(next as usize) {
+                sequence.push(self.explored.piece(run.node as usize));
+                next = run.parent;
+            }
+            sequence.reverse();
+            return Some((cost, sequence));
+        }
+        let Run { node, length, cost, .. } = self.runs[at as usize];
+        self.table.load(length);
+        let stopping = self.table.stopping(length, node as usize);
+        if stopping != NEVER {
+            self.open.push((Reverse(cost + stopping), Reverse(at), true));
+        }
+        for edge in self.table.graph().edges_of(node as usize) {
+            let edge = self.table.graph().all_edges()[edge];
+            if length + edge.width <= *problem.window.end() {
+                self.meet(Run {
+                    node: edge.to,
+                    length: length + edge.width,
+                    cost: cost + edge.cost,
+                    parent: at,
+                });
+            }
+        }
+        None
+    }
+}
