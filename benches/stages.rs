@@ -14,7 +14,7 @@ use openwork::domain::{BandMap, CurveSpec, PlanarCurve};
 use openwork::exemplar::{Exemplar, Limits, ReadOptions};
 use openwork::fabricate::snapped_to_f32;
 use openwork::fit::{FitOptions, Outline, StitchMethod};
-use openwork::job::{Band, BandBuilder, Output, Plan, PlanOptions, plan};
+use openwork::job::{Band, BandBuilder, DEFAULT_MEMORY_LIMIT, Output, Plan, PlanOptions, plan};
 use openwork::pieces::{Catalogue, CostWeights};
 use openwork::planar::{Contour, Grid, Region, Tolerances};
 use openwork::reeb::{ReebGraph, Slicing, SlicingRule};
@@ -85,6 +85,7 @@ fn solve(catalogue: &Catalogue, shape: Shape, length_mm: f64) -> Plan {
         weights: CostWeights::default(),
         seed: None,
         variety: None,
+        memory_limit: DEFAULT_MEMORY_LIMIT,
     };
     plan(catalogue, &options).expect("the fixtures make bands of one component")
 }

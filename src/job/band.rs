@@ -8,7 +8,7 @@ use super::error::JobError;
 use super::extrude::{check_stl, name};
 use super::output::{Format, Output, Pending, Target, persist};
 use super::part::{Part, PartError};
-use super::plan::{Plan, PlanError, PlanOptions, plan};
+use super::plan::{DEFAULT_MEMORY_LIMIT, Plan, PlanError, PlanOptions, plan};
 use super::refusal;
 use super::report::{
     BandReport, DroppedCutReport, FallbackReport, InputReport, SeamReport, StageTime, StitchReport,
@@ -103,6 +103,7 @@ impl Band {
             weights: options.weights,
             seed: options.seed,
             variety: job.variety,
+            memory_limit: DEFAULT_MEMORY_LIMIT,
         };
         let mut planned = clock.time(Stage::Solve, || plan(&cut.catalogue, &plan_options));
         if matches!(planned, Err(PlanError::Refused { .. })) && cut.admit_all_successors() {

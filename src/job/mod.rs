@@ -25,6 +25,7 @@
 mod band;
 mod builder;
 mod certificate;
+mod choice;
 mod error;
 mod extrude;
 mod json;
@@ -42,10 +43,11 @@ pub use certificate::{
     BridgeStep, Certificate, Closing, Connections, FileDigest, PieceDescriptor, ResultCounts, Steps,
     WantedCounts,
 };
+pub use choice::{Choice, Chosen, DEFAULT_TEMPERATURE, choose};
 pub use error::{JobError, OutlineFault};
 pub use extrude::{ExtrudeReport, extrude};
 pub use output::{Format, Output, Target};
-pub use plan::{Plan, PlanError, PlanOptions, plan};
+pub use plan::{DEFAULT_MEMORY_LIMIT, Plan, PlanError, PlanOptions, plan};
 pub use report::{
     BandReport, DroppedCutReport, FallbackReport, InputReport, SeamReport, StageTime, StitchReport,
 };

@@ -22,6 +22,8 @@ pub struct PlanOptions {
     pub seed: Option<u64>,
     /// The penalty on repetition.
     pub variety: Option<Variety>,
+    /// The memory that the search may take, in bytes, before it gives optimality up.
+    pub memory_limit: usize,
 }
 
 /// A sequence of pieces that meets the constraints.
@@ -109,7 +111,7 @@ pub fn plan(catalogue: &Catalogue, options: &PlanOptions) -> Result<Plan, PlanEr
     Err(PlanError::Refused { refusal: solver::explain(&problem, options.goal, longest), bin_mm })
 }
 
-fn finish(catalogue: &Catalogue, options: &PlanOptions, solution: Solution, epsilon: f64) -> Plan {
+pub(super) fn finish(catalogue: &Catalogue, options: &PlanOptions, solution: Solution, epsilon: f64) -> Plan {
     let Solution { sequence, cost, gap, labels, states } = solution;
     let cost = match options.seed {
         None => cost as f64 / 1e6,
@@ -123,6 +125,16 @@ fn finish(catalogue: &Catalogue, options: &PlanOptions, solution: Solution, epsi
     let natural_length_mm = sequence.iter().map(|&p| catalogue.pieces()[p].width_mm).sum();
     let gap = (options.seed.is_none() && options.variety.is_none()).then_some(gap as f64 / 1e6);
     Plan { sequence, cost, gap, epsilon, natural_length_mm, labels, states }
+}
+
+/// The search problem with the lengths within ε of L.
+pub(super) fn problem_of<'a>(catalogue: &'a Catalogue, options: &PlanOptions, epsilon: f64) -> Problem<'a> {
+    let bin_mm = bin_mm(catalogue, options.length_mm);
+    let mut problem = problem(catalogue, options, bin_mm);
+    if let Some(window) = window(options.length_mm, epsilon, bin_mm) {
+        problem.window = window;
+    }
+    problem
 }
 
 fn bin_mm(catalogue: &Catalogue, length_mm: f64) -> f64 {
@@ -196,7 +208,7 @@ fn problem<'a>(catalogue: &'a Catalogue, options: &PlanOptions, bin_mm: f64) -> 
         window: 0..=0,
         drift_limit: (DRIFT_UNITS / 2.0) as i32,
         variety: options.variety,
-        memory_limit: DEFAULT_MEMORY_LIMIT,
+        memory_limit: options.memory_limit,
     }
 }
 

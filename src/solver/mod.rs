@@ -36,7 +36,7 @@ pub use census::Census;
 pub use explain::{Refusal, explain};
 pub use problem::{Cost, Problem, Solution, Step, Unsolved};
 pub use random::Random;
-pub use variety::{Variety, autocorrelation};
+pub use variety::{Variety, autocorrelation, evenness, longest_repeat};
 
 use crate::topology::{Automaton, Goal};
 

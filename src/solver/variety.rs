@@ -3,6 +3,8 @@
 //! A(η) = max over shifts j of Σ exp(−|η_i − η_{i+j}| / σ). The paper's maximum runs over j from 0, where the
 //! sum is the length of the sequence whatever it is; j is meant to begin at 1, and does here.
 
+use rustc_hash::FxHashMap;
+
 use super::problem::Cost;
 
 /// The paper's σ: pieces that are neighbours in the exemplar correlate by exp(−2).
@@ -53,9 +55,80 @@ pub fn autocorrelation(sequence: &[usize]) -> f64 {
     (1..sequence.len()).map(at).fold(0.0, f64::max)
 }
 
+/// The most pieces in a row that occur twice in a sequence without overlapping.
+pub fn longest_repeat(sequence: &[usize]) -> usize {
+    // What repeats at one length repeats at every shorter one.
+    let (mut repeats, mut does_not) = (0, sequence.len() / 2 + 1);
+    while does_not - repeats > 1 {
+        let length = (repeats + does_not) / 2;
+        if has_repeat(sequence, length) { repeats = length } else { does_not = length }
+    }
+    repeats
+}
+
+/// Whether two stretches of `length` pieces that do not overlap are equal: by a hash that rolls along, and a
+/// comparison where it agrees.
+fn has_repeat(sequence: &[usize], length: usize) -> bool {
+    const BASE: u64 = 0x9e37_79b9_7f4a_7c15;
+    let top = (1..length).fold(1u64, |power, _| power.wrapping_mul(BASE));
+    let mut first: FxHashMap<u64, Vec<usize>> = FxHashMap::default();
+    let mut hash = 0u64;
+    for (end, &piece) in sequence.iter().enumerate() {
+        if end >= length {
+            hash = hash.wrapping_sub((sequence[end - length] as u64 + 1).wrapping_mul(top));
+        }
+        hash = hash.wrapping_mul(BASE).wrapping_add(piece as u64 + 1);
+        let Some(begin) = (end + 1).checked_sub(length) else { continue };
+        let here = &sequence[begin..=end];
+        let known = first.entry(hash).or_default();
+        match known.iter().find(|&&k| &sequence[k..k + length] == here) {
+            Some(&k) if k + length <= begin => return true,
+            Some(_) => {}
+            None => known.push(begin),
+        }
+    }
+    false
+}
+
+/// How evenly the pieces of an exemplar of `pieces` are used: the entropy of their frequencies as a part of the
+/// greatest there is. 1 uses all equally often, 0 only one.
+pub fn evenness(sequence: &[usize], pieces: usize) -> f64 {
+    if pieces < 2 || sequence.is_empty() {
+        return 1.0;
+    }
+    let mut uses = vec![0u32; pieces];
+    sequence.iter().for_each(|&p| uses[p] += 1);
+    let n = sequence.len() as f64;
+    let parts = uses.into_iter().filter(|&u| u > 0).map(|u| f64::from(u) / n);
+    -parts.map(|p| p * p.ln()).sum::<f64>() / (pieces as f64).ln()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn repeats_and_uses_are_counted() {
+        assert_eq!(longest_repeat(&[1, 2, 3, 1, 2, 3, 1]), 3);
+        assert_eq!(longest_repeat(&[1, 1, 1, 1, 1]), 2);
+        assert_eq!(longest_repeat(&[1, 2, 3, 4]), 0);
+        assert_eq!(longest_repeat(&[]), 0);
+        assert!((evenness(&[0, 1, 2, 3], 4) - 1.0).abs() < 1e-12);
+        assert!((evenness(&[0, 1, 0, 1], 4) - 0.5).abs() < 1e-12);
+        assert!(evenness(&[2, 2, 2], 4).abs() < 1e-12);
+    }
+
+    proptest! {
+        #[test]
+        fn the_longest_repeat_is_found(sequence in prop::collection::vec(0usize..3, 0..24)) {
+            let n = sequence.len();
+            let is_repeat = |a: usize, b: usize, l: usize| b + l <= n && sequence[a..a + l] == sequence[b..b + l];
+            let all = (0..n).flat_map(|a| (1..=n).map(move |l| (a, l)));
+            let found = all.filter(|&(a, l)| (a + l..n).any(|b| is_repeat(a, b, l))).map(|(_, l)| l).max();
+            prop_assert_eq!(longest_repeat(&sequence), found.unwrap_or(0));
+        }
+    }
 
     #[test]
     fn repetition_correlates_and_extending_agrees() {

@@ -1,0 +1,134 @@
+//! Which of the sequences that meet the constraints are taken: the cheapest, the k cheapest, or random ones.
+
+use std::collections::BTreeSet;
+
+use super::plan::{Plan, PlanError, PlanOptions, finish, plan, problem_of};
+use crate::pieces::Catalogue;
+use crate::solver::{self, Census, Random, Solution, Unsolved, canonical};
+use crate::topology::Shape;
+
+/// Which sequences are taken.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Choice {
+    /// The cheapest.
+    #[default]
+    Cheapest,
+    /// So many of the cheapest, none twice.
+    Best(usize),
+    /// Different ones at random.
+    Drawn {
+        /// The same seed draws the same sequences.
+        seed: u64,
+        /// How many.
+        count: usize,
+        /// T: a sequence is drawn with a probability in proportion to exp(−cost/T).
+        temperature: f64,
+    },
+}
+
+/// The temperature when none is asked for, in units of the cost, in which a jump costs λ = 1: a jump that is not
+/// needed then is about e⁻⁶ as likely as none, and with a dozen to choose from at each cut there is one in some
+/// thirty pieces.
+pub const DEFAULT_TEMPERATURE: f64 = 0.16;
+/// How often a sequence is drawn again when it was drawn before.
+const REDRAWS: usize = 40;
+
+/// Sequences, and what is known of all.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chosen {
+    /// The sequences: by cost, or in the order in which they were drawn.
+    pub plans: Vec<Plan>,
+    /// The natural logarithm of the number of sequences that meet the constraints within the accepted lengths, if
+    /// they could be counted. A ring counts once for each narrowest cut at which it can be opened.
+    pub ln_sequences: Option<f64>,
+    /// Whether random sequences were drawn from all that there are with their exact probabilities. Otherwise each is
+    /// the cheapest when every jump costs a random part more.
+    pub is_exact: Option<bool>,
+}
+
+/// The sequences of `catalogue` for `options` that `choice` takes; with `counted`, all are counted.
+///
+/// # Errors
+/// As [`plan`]; [`PlanError::TooLarge`] also when there is too much to list the k cheapest.
+pub fn choose(
+    catalogue: &Catalogue,
+    options: &PlanOptions,
+    choice: Choice,
+    counted: bool,
+) -> Result<Chosen, PlanError> {
+    let cheapest = plan(catalogue, options)?;
+    let problem = problem_of(catalogue, options, cheapest.epsilon);
+    let count = || Census::new(&problem, options.goal, f64::INFINITY).map(|census| census.ln_total());
+    let ln_sequences = if counted { count() } else { None };
+    let epsilon = cheapest.epsilon;
+    let to_plan = |solution: Solution| finish(catalogue, options, solution, epsilon);
+    let (plans, is_exact) = match choice {
+        Choice::Cheapest => (vec![cheapest], None),
+        Choice::Best(k) => {
+            let list = solver::best(&problem, options.goal, k).map_err(|error| match error {
+                Unsolved::TooLarge { labels } => PlanError::TooLarge { labels },
+                Unsolved::Infeasible => PlanError::TooLarge { labels: 0 },
+            })?;
+            (list.into_iter().map(to_plan).collect(), None)
+        }
+        Choice::Drawn { seed, count, temperature } => {
+            let census = Census::new(&problem, options.goal, temperature);
+            let is_exact = census.is_some();
+            let plans = match census {
+                Some(census) => {
+                    let drawn = draw(census, seed, count, options.shape);
+                    let solution = |sequence: Vec<usize>| Solution {
+                        cost: problem.cost_of(&sequence).unwrap_or_default(),
+                        sequence,
+                        gap: 0,
+                        labels: cheapest.labels,
+                        states: cheapest.states,
+                    };
+                    let plans = drawn.into_iter().map(|sequence| to_plan(solution(sequence)));
+                    plans.map(|plan| Plan { gap: None, ..plan }).collect()
+                }
+                None => perturbed(catalogue, options, seed, count)?,
+            };
+            (plans, Some(is_exact))
+        }
+    };
+    Ok(Chosen { plans, ln_sequences, is_exact })
+}
+
+/// Up to `count` different sequences.
+fn draw(mut census: Census<'_>, seed: u64, count: usize, shape: Shape) -> Vec<Vec<usize>> {
+    let mut random = Random::new(seed);
+    let mut seen = BTreeSet::new();
+    let mut drawn = Vec::new();
+    for _ in 0..count.saturating_mul(REDRAWS) {
+        let Some(sequence) = census.draw(&mut random).filter(|_| drawn.len() < count) else { break };
+        if seen.insert(canonical(&sequence, shape)) {
+            drawn.push(sequence);
+        }
+    }
+    drawn
+}
+
+/// Up to `count` different sequences, each the cheapest when every jump costs a random part more.
+fn perturbed(
+    catalogue: &Catalogue,
+    options: &PlanOptions,
+    seed: u64,
+    count: usize,
+) -> Result<Vec<Plan>, PlanError> {
+    /// Seeds that are tried for each sequence.
+    const TRIES: usize = 3;
+    let mut random = Random::new(seed);
+    let mut seen = BTreeSet::new();
+    let mut plans = Vec::new();
+    for _ in 0..count.saturating_mul(TRIES) {
+        if plans.len() == count {
+            break;
+        }
+        let found = plan(catalogue, &PlanOptions { seed: Some(random.bits()), ..*options })?;
+        if seen.insert(canonical(&found.sequence, options.shape)) {
+            plans.push(found);
+        }
+    }
+    Ok(plans)
+}
