@@ -1,0 +1,232 @@
+//! Laying bridges of one kind: the shortest first, each where it is best.
+
+use super::ground::Ground;
+use super::links::{Link, links};
+use super::place::{Place, Prober};
+use super::trial::{REQUIRED, Site, Verdict};
+use super::{Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts};
+use crate::planar::{EdgeIndex, Grid, GridPoint, Region};
+
+/// A machine's narrowest width is exceeded by this: what is just as wide is lost in rounding.
+const SPARE: f64 = 1.05;
+/// A place may be so much farther than the nearest, in parts of its distance and in widths, if it is better.
+const DETOUR: f64 = 0.3;
+const DETOUR_WIDTHS: f64 = 1.0;
+/// What each grade of hold is worth, in widths of length, and what it is worth to do what the machine requires.
+const GRADE_WORTH: f64 = 0.5;
+const REQUIRED_WORTH: f64 = 10.0;
+/// Loops are looked for within so many widths first, and then within twice as many, and so on.
+const FIRST_REACH: f64 = 4.0;
+/// The grade that a loop must have while there may be a better place elsewhere.
+const GOOD_GRADE: usize = 1;
+/// Middles of bridges closer than this, in widths, would overlap.
+const BESIDE: f64 = 1.2;
+
+/// `region` with `needed` bridges of one kind.
+pub(super) fn lay(
+    region: &Region,
+    kind: BridgeKind,
+    needed: usize,
+    options: &BridgeOptions,
+) -> Result<Bridged, BridgeError> {
+    let side = kind.side();
+    let ground = Ground::new(region);
+    let index = EdgeIndex::new(region);
+    let machine_mm = if kind.is_strut() { options.min_feature_mm } else { options.min_gap_mm };
+    let width_mm = options.width_mm.max(SPARE * machine_mm);
+    let prober = Prober { ground: &ground, index: &index, side, width_mm };
+    let (low, high) = region.bounds_mm().unwrap_or_default();
+    // Windows have the counts of the whole but for the rounding of their borders. Should that ever make a
+    // difference, the whole is counted after each bridge.
+    for careful in [false, true] {
+        let site = Site::new(&ground, side, width_mm, [options.min_feature_mm, options.min_gap_mm]);
+        let has = Counts::of(region);
+        let mut layer = Layer {
+            prober,
+            site,
+            kind,
+            needed,
+            has,
+            careful,
+            extent_mm: low.distance(high),
+            bridges: Vec::new(),
+        };
+        if kind == BridgeKind::Join || kind == BridgeKind::Open {
+            let apart = options.closed_around.filter(|_| kind == BridgeKind::Open);
+            layer.join(apart.map(|p| [0, ground.face_of(region, nearest_step(region.grid(), p))]));
+        } else {
+            layer.close();
+        }
+        let laid = layer.bridges.len();
+        if laid < needed {
+            return Err(BridgeError::NoPlace { kind, laid, needed, width_mm });
+        }
+        let built = layer.site.built();
+        if Counts::of(&built) == kind.changed(has, needed) {
+            return Ok(Bridged { region: built, bridges: layer.bridges });
+        }
+    }
+    Err(BridgeError::NoPlace { kind, laid: 0, needed, width_mm })
+}
+
+fn nearest_step(grid: Grid, p: glam::DVec2) -> GridPoint {
+    GridPoint::new(grid.steps(p.x), grid.steps(p.y))
+}
+
+/// Bridges of one kind while they are laid.
+struct Layer<'a> {
+    prober: Prober<'a>,
+    site: Site<'a>,
+    kind: BridgeKind,
+    needed: usize,
+    has: Counts,
+    /// Whether the whole is counted after each bridge.
+    careful: bool,
+    extent_mm: f64,
+    bridges: Vec<Bridge>,
+}
+
+impl Layer<'_> {
+    fn is_done(&self) -> bool {
+        self.bridges.len() == self.needed
+    }
+
+    /// Joins the nearest nodes first (Kruskal's minimum spanning forest), but never the two of `apart`.
+    fn join(&mut self, apart: Option<[usize; 2]>) {
+        let (ground, side) = (self.prober.ground, self.prober.side);
+        let mut sets = Sets::new(ground.nodes(side), apart);
+        let (mut over, mut reach) = (-1.0, self.prober.width_mm);
+        // Links without a place for a bridge. When longer ones are taken, they too may take a longer way.
+        let mut without_place: Vec<Link> = Vec::new();
+        while !self.is_done() && over <= self.extent_mm {
+            let fresh = links(ground, side, over, reach, |a, b| sets.may_join(a, b));
+            for (link, is_fresh) in
+                std::mem::take(&mut without_place).into_iter().map(|l| (l, false)).chain(fresh.into_iter().map(|l| (l, true)))
+            {
+                let [a, b] = link.rims.map(|rim| ground.node(rim, side));
+                if self.is_done() || !sets.may_join(a, b) {
+                    continue;
+                }
+                let usual = (1.0 + DETOUR) * link.distance_mm + DETOUR_WIDTHS * self.prober.width_mm;
+                let limit = if is_fresh { usual } else { usual.max(reach) };
+                if self.lay_best(&self.prober.between(link.rims, limit), link.distance_mm) {
+                    sets.join(a, b);
+                } else {
+                    without_place.push(link);
+                }
+            }
+            (over, reach) = (reach, 2.0 * reach);
+        }
+    }
+
+    /// Closes loops where they are shortest.
+    fn close(&mut self) {
+        let mut reach = FIRST_REACH * self.prober.width_mm;
+        while !self.is_done() {
+            let is_last = reach > self.extent_mm;
+            let places = self.prober.loops(reach);
+            for worst in [GOOD_GRADE, REQUIRED].into_iter().take(if is_last { 2 } else { 1 }) {
+                for place in &places {
+                    if self.is_done() {
+                        return;
+                    }
+                    if self.is_beside(place) {
+                        continue;
+                    }
+                    if let Some(verdict) = self.verdict(place, false).filter(|v| v.grade <= worst) {
+                        self.lay(place, verdict, place.length_mm());
+                    }
+                }
+            }
+            if is_last {
+                return;
+            }
+            reach *= 2.0;
+        }
+    }
+
+    fn is_beside(&self, place: &Place) -> bool {
+        let near = BESIDE * self.prober.width_mm;
+        self.bridges.iter().any(|laid| {
+            let [from, to] = [laid.from_mm, laid.to_mm].map(glam::DVec2::from);
+            (0.5 * (from + to)).distance(place.middle()) < near
+        })
+    }
+
+    /// Lays the bridge at the best of these places; `false` when none will do.
+    fn lay_best(&mut self, places: &[Place], least_mm: f64) -> bool {
+        let mut passed: Vec<(f64, &Place, Verdict)> = Vec::new();
+        let mut least = f64::INFINITY;
+        for place in places {
+            // The places come in the order of their scores.
+            if place.score >= least {
+                break;
+            }
+            if let Some(verdict) = self.verdict(place, true) {
+                let fails = if verdict.grade > REQUIRED { REQUIRED_WORTH } else { 0.0 };
+                let worth = GRADE_WORTH * verdict.grade as f64 + fails;
+                let cost = place.score + worth * self.prober.width_mm;
+                least = least.min(cost);
+                passed.push((cost, place, verdict));
+            }
+        }
+        passed.sort_by(|a, b| a.0.total_cmp(&b.0));
+        passed.into_iter().any(|(_, place, verdict)| self.lay(place, verdict, least_mm))
+    }
+
+    fn verdict(&self, place: &Place, joins: bool) -> Option<Verdict> {
+        self.site.try_out(&place.corners, place.length_mm(), joins)
+    }
+
+    /// Lays a bridge; `false` when the whole was counted and the bridge taken up again.
+    fn lay(&mut self, place: &Place, verdict: Verdict, least_mm: f64) -> bool {
+        self.site.lay(&place.corners);
+        let wanted = self.kind.changed(self.has, self.bridges.len() + 1);
+        if self.careful && Counts::of(&self.site.built()) != wanted {
+            self.site.take_up();
+            return false;
+        }
+        self.bridges.push(Bridge {
+            kind: self.kind,
+            from_mm: place.from.to_array(),
+            to_mm: place.to.to_array(),
+            width_mm: self.prober.width_mm,
+            length_mm: place.length_mm(),
+            least_mm,
+            area_mm2: verdict.area_mm2,
+            corners_mm: place.corners.map(|p| p.to_array()),
+        });
+        true
+    }
+}
+
+/// What is joined already, and what must not be.
+struct Sets {
+    parent: Vec<usize>,
+    apart: Option<[usize; 2]>,
+}
+
+impl Sets {
+    fn new(count: usize, apart: Option<[usize; 2]>) -> Self {
+        Self { parent: (0..count).collect(), apart }
+    }
+
+    fn root(&mut self, mut node: usize) -> usize {
+        while self.parent[node] != node {
+            self.parent[node] = self.parent[self.parent[node]];
+            node = self.parent[node];
+        }
+        node
+    }
+
+    fn may_join(&mut self, a: usize, b: usize) -> bool {
+        let (a, b) = (self.root(a), self.root(b));
+        let kept = self.apart.map(|[x, y]| [self.root(x), self.root(y)]);
+        a != b && kept != Some([a, b]) && kept != Some([b, a])
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.parent[a] = b;
+    }
+}

@@ -1,0 +1,228 @@
+//! A bridge is tried out before it is laid: exactly, and at the tolerance of a machine.
+//!
+//! A bridge changes nothing outside of its corners, so a window around it is enough: the counts of the window
+//! change by what the counts of the whole change by. With M the material (ink for a strut, gap for a slit) and S
+//! the bridge, a bridge that joins makes one component fewer of M and no other hole; one that makes a loop takes
+//! one off the Euler characteristic. The same must hold of M eroded, or the bridge hangs on by a sliver, and of
+//! M dilated, or it leaves a slot beside itself. How much erosion a place withstands ranks it.
+
+use glam::DVec2;
+
+use super::ground::{Ground, Side};
+use crate::planar::{FillRule, GridPoint, Region};
+
+/// Erosions that a good bridge withstands, as parts of its width, the best first; then only what is required.
+const GRADES: [f64; 3] = [0.35, 0.2, 0.08];
+/// The grade of a bridge that withstands what is required and no more; one grade more and it does not.
+pub(super) const REQUIRED: usize = GRADES.len();
+/// The window reaches so far beyond the bridge, in widths, so that what it holds on to is seen.
+const WINDOW: f64 = 2.0;
+/// The required erosion is exceeded by this, as a width that just holds is lost in rounding.
+const SURPLUS: f64 = 1.02;
+/// Arcs of eroded corners, as part of the radius.
+const ARC: f64 = 0.03;
+
+/// How a bridge passed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Verdict {
+    /// 0 is the best; see [`GRADES`].
+    pub(super) grade: usize,
+    /// The material that is added or taken away, in square millimetres.
+    pub(super) area_mm2: f64,
+}
+
+/// A region with the bridges that were laid so far.
+pub(super) struct Site<'a> {
+    ground: &'a Ground,
+    side: Side,
+    width_mm: f64,
+    /// Erosion of the material that is required, in millimetres.
+    erosion_mm: f64,
+    /// Dilation of the material that is required.
+    dilation_mm: f64,
+    /// Bridges laid, counter-clockwise.
+    laid: Vec<Laid>,
+}
+
+struct Laid {
+    path: Vec<GridPoint>,
+    low: DVec2,
+    high: DVec2,
+}
+
+impl<'a> Site<'a> {
+    /// Without bridges yet. `min_mm` are the narrowest ink and the narrowest gap that must be.
+    pub(super) fn new(ground: &'a Ground, side: Side, width_mm: f64, min_mm: [f64; 2]) -> Self {
+        let [feature, gap] = min_mm.map(|mm| 0.5 * mm * SURPLUS);
+        let (erosion_mm, dilation_mm) = match side {
+            Side::Gap => (feature, gap),
+            Side::Ink => (gap, feature),
+        };
+        Self { ground, side, width_mm, erosion_mm, dilation_mm, laid: Vec::new() }
+    }
+
+    /// Lays a bridge.
+    pub(super) fn lay(&mut self, corners: &[DVec2; 4]) {
+        self.laid.push(self.on_grid(corners));
+    }
+
+    /// Takes up the bridge that was laid last.
+    pub(super) fn take_up(&mut self) {
+        self.laid.pop();
+    }
+
+    /// The region with everything that was laid.
+    pub(super) fn built(&self) -> Region {
+        let ink = self.ground.rims.iter().map(|rim| rim.steps.clone());
+        let laid = self.laid.iter().map(|laid| match self.side {
+            Side::Gap => laid.path.clone(),
+            Side::Ink => laid.path.iter().rev().copied().collect(),
+        });
+        Region::fill(self.ground.grid, &ink.chain(laid).collect::<Vec<_>>(), FillRule::Positive)
+    }
+
+    /// Tries a bridge between places `length_mm` apart; `None` when it does not do what it should.
+    pub(super) fn try_out(&self, corners: &[DVec2; 4], length_mm: f64, joins: bool) -> Option<Verdict> {
+        let bridge = self.on_grid(corners);
+        let largest = self.width_mm.max(2.0 * self.erosion_mm).max(2.0 * self.dilation_mm);
+        let mut paths = self.window(bridge.low - WINDOW * largest, bridge.high + WINDOW * largest);
+        let without = Region::fill(self.ground.grid, &paths, FillRule::Positive);
+        paths.push(bridge.path);
+        let with = Region::fill(self.ground.grid, &paths, FillRule::Positive);
+        let change = Change::between(&without, &with);
+        if !change.is_bridge(joins) {
+            return None;
+        }
+        let area_mm2 = with.area_mm2() - without.area_mm2();
+        let withstands = |part: f64| {
+            let eroded = |r: f64| Change::between(&offset(&without, -r), &offset(&with, -r));
+            let erosion_mm = self.erosion_mm.max(part * self.width_mm);
+            let dilation_mm = self.dilation_mm.max(part * self.width_mm);
+            if erosion_mm > 0.0 && !eroded(erosion_mm).is_bridge(joins) {
+                return false;
+            }
+            // Dilated far enough, both sides of a short bridge meet without it.
+            dilation_mm == 0.0 || {
+                let change = eroded(-dilation_mm);
+                change.is_bridge(joins) || (length_mm < 2.5 * dilation_mm && change.is_none())
+            }
+        };
+        let grade = GRADES.into_iter().chain([0.0]).position(withstands).unwrap_or(REQUIRED + 1);
+        Some(Verdict { grade, area_mm2 })
+    }
+
+    fn on_grid(&self, corners: &[DVec2; 4]) -> Laid {
+        let grid = self.ground.grid;
+        let path = corners.iter().map(|p| GridPoint::new(grid.steps(p.x), grid.steps(p.y))).collect();
+        let low = corners.iter().copied().reduce(DVec2::min).unwrap_or_default();
+        let high = corners.iter().copied().reduce(DVec2::max).unwrap_or_default();
+        Laid { path, low, high }
+    }
+
+    /// Paths whose positive winding is the material in the window, with the bridges that were laid.
+    fn window(&self, low: DVec2, high: DVec2) -> Vec<Vec<GridPoint>> {
+        let grid = self.ground.grid;
+        let meets = |a: DVec2, b: DVec2| a.cmple(high).all() && b.cmpge(low).all();
+        let steps = |p: DVec2| GridPoint::new(grid.steps(p.x), grid.steps(p.y));
+        let (least, greatest) = (steps(low), steps(high));
+        let rims = self.ground.rims.iter().filter(|rim| meets(rim.low, rim.high));
+        let mut paths: Vec<Vec<GridPoint>> =
+            rims.map(|rim| clipped(&rim.steps, least, greatest)).filter(|path| path.len() > 2).collect();
+        if self.side == Side::Ink {
+            paths.iter_mut().for_each(|path| path.reverse());
+            let corners = [(least.x, least.y), (greatest.x, least.y), (greatest.x, greatest.y), (least.x, greatest.y)];
+            paths.push(corners.map(|(x, y)| GridPoint::new(x, y)).to_vec());
+        }
+        paths.extend(self.laid.iter().filter(|l| meets(l.low, l.high)).map(|l| l.path.clone()));
+        paths
+    }
+}
+
+fn offset(region: &Region, radius_mm: f64) -> Region {
+    region.offset(radius_mm, ARC * radius_mm.abs())
+}
+
+/// What a bridge changes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Change {
+    components: isize,
+    holes: isize,
+}
+
+impl Change {
+    fn between(before: &Region, after: &Region) -> Self {
+        let less = |a: usize, b: usize| a as isize - b as isize;
+        Self {
+            components: less(after.components(), before.components()),
+            holes: less(after.holes(), before.holes()),
+        }
+    }
+
+    /// Whether it joins, or makes a loop: whether two ends of a loop hang together is not always to be seen in
+    /// the window.
+    fn is_bridge(self, joins: bool) -> bool {
+        (self.components, self.holes) == (-1, 0) || (!joins && (self.components, self.holes) == (0, 1))
+    }
+
+    fn is_none(self) -> bool {
+        (self.components, self.holes) == (0, 0)
+    }
+}
+
+/// A closed path cut to a box (Sutherland and Hodgman 1974). Where the path leaves the box and comes back, it runs
+/// along the border, forth and back where it passes by: such stretches enclose nothing.
+fn clipped(path: &[GridPoint], low: GridPoint, high: GridPoint) -> Vec<GridPoint> {
+    let swap = |p: GridPoint| GridPoint::new(p.y, p.x);
+    let negate = |p: GridPoint| GridPoint::new(-p.x, -p.y);
+    let right = |path: &[GridPoint], x: i64| right_of(path, x);
+    let above: Vec<GridPoint> = right(path, low.x).into_iter().map(swap).collect();
+    let rest: Vec<GridPoint> = right(&above, low.y).into_iter().map(|p| negate(swap(p))).collect();
+    let below: Vec<GridPoint> = right(&rest, -high.x).into_iter().map(swap).collect();
+    right(&below, -high.y).into_iter().map(|p| negate(swap(p))).collect()
+}
+
+/// The part of a closed path where x is at least `limit`.
+fn right_of(path: &[GridPoint], limit: i64) -> Vec<GridPoint> {
+    let mut kept = Vec::new();
+    let Some(&last) = path.last() else { return kept };
+    let mut from = last;
+    for &to in path {
+        if (from.x < limit) != (to.x < limit) {
+            let t = (limit - from.x) as f64 / (to.x - from.x) as f64;
+            kept.push(GridPoint::new(limit, from.y + ((to.y - from.y) as f64 * t).round() as i64));
+        }
+        if to.x >= limit {
+            kept.push(to);
+        }
+        from = to;
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn path(points: &[(i64, i64)]) -> Vec<GridPoint> {
+        points.iter().map(|&(x, y)| GridPoint::new(x, y)).collect()
+    }
+
+    #[test]
+    fn clipping_keeps_the_inside_and_its_turn() {
+        let (low, high) = (GridPoint::new(0, 0), GridPoint::new(10, 10));
+        let area = |p: &[GridPoint]| -> i64 {
+            (0..p.len()).map(|i| (p[i], p[(i + 1) % p.len()])).map(|(a, b)| a.x * b.y - b.x * a.y).sum()
+        };
+        let around = path(&[(-5, -5), (20, -5), (20, 20), (-5, 20)]);
+        assert_eq!(area(&clipped(&around, low, high)), 200);
+        let corner = path(&[(5, 5), (20, 5), (20, 20), (5, 20)]);
+        assert_eq!(area(&clipped(&corner, low, high)), 50);
+        let hole: Vec<GridPoint> = corner.iter().rev().copied().collect();
+        assert_eq!(area(&clipped(&hole, low, high)), -50);
+        let outside = path(&[(20, 0), (30, 0), (30, 5)]);
+        assert_eq!(area(&clipped(&outside, low, high)), 0);
+        // A horseshoe whose bend is outside becomes two bars.
+        let horseshoe = path(&[(2, 20), (2, 5), (4, 5), (4, 18), (6, 18), (6, 5), (8, 5), (8, 20)]);
+        assert_eq!(area(&clipped(&horseshoe, low, high)), 40);
+    }
+}
