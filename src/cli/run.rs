@@ -131,6 +131,9 @@ fn builder(a: &BandArguments) -> BandBuilder {
     if let Some(radius) = a.round {
         builder = builder.round_mm(radius);
     }
+    if let Some(width) = a.bridge {
+        builder = builder.bridge_mm(width);
+    }
     builder
 }
 

@@ -23,6 +23,7 @@
 //! ```
 
 mod band;
+mod bridging;
 mod builder;
 mod error;
 mod extrude;
@@ -34,6 +35,7 @@ mod report;
 mod stage;
 
 pub use band::Band;
+pub use bridging::BridgesReport;
 pub use builder::{BandBuilder, BandJob, SlicingChoice};
 pub use error::{JobError, OutlineFault};
 pub use extrude::{ExtrudeReport, extrude};

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::bridging::BridgesReport;
 use crate::domain::Squeeze;
 use crate::verify::Narrowest;
 
@@ -95,6 +96,9 @@ pub struct BandReport {
     pub squash: f64,
     /// Where the curve bends so hard that the inner side is squeezed.
     pub squeezes: Vec<Squeeze>,
+    /// The bridges, when the ornament alone could not give what was asked for; then `components`, `holes` and
+    /// the files are with them.
+    pub bridges: Option<BridgesReport>,
     /// The seams.
     pub seams: SeamReport,
     /// Partial runs that the search made.
