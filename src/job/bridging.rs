@@ -35,8 +35,8 @@ pub struct BridgesReport {
 impl BridgesReport {
     pub(super) fn new(without: Counts, bridges: Vec<Bridge>) -> Self {
         let (struts, slits): (Vec<&Bridge>, Vec<&Bridge>) = bridges.iter().partition(|b| b.kind.is_strut());
-        let length = |of: &[&Bridge]| of.iter().map(|b| b.length_mm).sum();
-        let area = |of: &[&Bridge]| of.iter().map(|b| b.area_mm2).sum();
+        let length = |of: &[&Bridge]| of.iter().fold(0.0, |sum, b| sum + b.length_mm);
+        let area = |of: &[&Bridge]| of.iter().fold(0.0, |sum, b| sum + b.area_mm2);
         Self {
             without,
             struts: struts.len(),
@@ -118,6 +118,7 @@ pub(super) fn options(width_mm: f64, tolerances: &Tolerances, inside_mm: Option<
         width_mm,
         min_feature_mm: tolerances.min_feature_mm(),
         min_gap_mm: tolerances.min_gap_mm(),
+        chord_mm: tolerances.chord_mm(),
         closed_around: inside_mm,
     }
 }

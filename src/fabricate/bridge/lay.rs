@@ -10,8 +10,9 @@ use crate::planar::{EdgeIndex, Grid, GridPoint, Region};
 /// A machine's narrowest width is exceeded by this: what is just as wide is lost in rounding.
 const SPARE: f64 = 1.05;
 /// A place may be so much farther than the nearest, in parts of its distance and in widths, if it is better.
-const DETOUR: f64 = 0.3;
-const DETOUR_WIDTHS: f64 = 1.0;
+const DETOUR: [f64; 2] = [0.3, 1.0];
+/// The same where there was no place so near.
+const LONG_DETOUR: [f64; 2] = [2.0, 4.0];
 /// What each grade of hold is worth, in widths of length, and what it is worth to do what the machine requires.
 const GRADE_WORTH: f64 = 0.5;
 const REQUIRED_WORTH: f64 = 10.0;
@@ -39,7 +40,7 @@ pub(super) fn lay(
     // Windows have the counts of the whole but for the rounding of their borders. Should that ever make a
     // difference, the whole is counted after each bridge.
     for careful in [false, true] {
-        let site = Site::new(&ground, side, width_mm, [options.min_feature_mm, options.min_gap_mm]);
+        let site = Site::new(&ground, side, width_mm, options);
         let has = Counts::of(region);
         let mut layer = Layer {
             prober,
@@ -96,23 +97,22 @@ impl Layer<'_> {
         let (ground, side) = (self.prober.ground, self.prober.side);
         let mut sets = Sets::new(ground.nodes(side), apart);
         let (mut over, mut reach) = (-1.0, self.prober.width_mm);
-        // Links without a place for a bridge. When longer ones are taken, they too may take a longer way.
-        let mut without_place: Vec<Link> = Vec::new();
-        while !self.is_done() && over <= self.extent_mm {
+        // Links without a place for a bridge: when longer ones are taken, they too may take a longer way.
+        let mut again: Vec<Link> = Vec::new();
+        while !self.is_done() && (over <= self.extent_mm || !again.is_empty()) {
             let fresh = links(ground, side, over, reach, |a, b| sets.may_join(a, b));
-            for (link, is_fresh) in
-                std::mem::take(&mut without_place).into_iter().map(|l| (l, false)).chain(fresh.into_iter().map(|l| (l, true)))
-            {
+            let second = std::mem::take(&mut again).into_iter().map(|link| (link, false));
+            for (link, is_first) in second.chain(fresh.into_iter().map(|link| (link, true))) {
                 let [a, b] = link.rims.map(|rim| ground.node(rim, side));
                 if self.is_done() || !sets.may_join(a, b) {
                     continue;
                 }
-                let usual = (1.0 + DETOUR) * link.distance_mm + DETOUR_WIDTHS * self.prober.width_mm;
-                let limit = if is_fresh { usual } else { usual.max(reach) };
+                let [part, widths] = if is_first { DETOUR } else { LONG_DETOUR };
+                let limit = (1.0 + part) * link.distance_mm + widths * self.prober.width_mm;
                 if self.lay_best(&self.prober.between(link.rims, limit), link.distance_mm) {
                     sets.join(a, b);
-                } else {
-                    without_place.push(link);
+                } else if is_first {
+                    again.push(link);
                 }
             }
             (over, reach) = (reach, 2.0 * reach);

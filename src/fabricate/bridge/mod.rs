@@ -61,6 +61,9 @@ pub struct BridgeOptions {
     pub min_feature_mm: f64,
     /// The narrowest gap that the machine keeps open; 0 when it was not given.
     pub min_gap_mm: f64,
+    /// The greatest distance between the region and the curves that will stand for it: no bridge hangs on by so
+    /// little.
+    pub chord_mm: f64,
     /// A point in a gap that no slit may open to the outside: the inside of a ring that must stay closed.
     pub closed_around: Option<DVec2>,
 }

@@ -21,6 +21,8 @@ const MOST_PLACES: usize = 600;
 const SINK: f64 = 0.15;
 /// How far a ray looks for the other contour beyond the middle one's hit, as part of the width.
 const LOOK: f64 = 1.5;
+/// How far the edge of a bridge may lie off what is crossed, where that bends, as part of the width.
+const BEND: f64 = 0.6;
 /// What is paid for ends that are not square, for each millimetre that one edge of the bridge is longer.
 const SKEW: f64 = 0.5;
 /// What is paid for a ray that finds nothing to hold on to, as part of the width.
@@ -130,7 +132,7 @@ impl Prober<'_> {
             let mut hits: Vec<Hit> = Vec::new();
             for ray in -RAYS..=RAYS {
                 let start = middle + left * (half_mm * f64::from(ray) / f64::from(RAYS));
-                let hit = self.shoot(&edges, start, direction, deepest);
+                let hit = self.shoot(&edges, start, direction, half_length + BEND * self.width_mm, deepest);
                 if ray == 0 && hit.is_none_or(|hit| (hit.enter - half_length).abs() > 1e-3 * self.width_mm) {
                     return None;
                 }
@@ -154,7 +156,14 @@ impl Prober<'_> {
     }
 
     /// Where a ray enters what is to be joined, and where it leaves it again; `None` when it finds nothing.
-    fn shoot(&self, edges: &[[DVec2; 2]], start: DVec2, ahead: DVec2, deepest: f64) -> Option<Hit> {
+    fn shoot(
+        &self,
+        edges: &[[DVec2; 2]],
+        start: DVec2,
+        ahead: DVec2,
+        crossed: f64,
+        deepest: f64,
+    ) -> Option<Hit> {
         let mut crossings: Vec<(f64, bool)> = Vec::new();
         for &[from, to] in edges {
             let (a, b) = (ahead.perp_dot(from - start), ahead.perp_dot(to - start));
@@ -168,11 +177,15 @@ impl Prober<'_> {
         }
         crossings.retain(|&(t, _)| t > 0.0 && t <= 2.0 * deepest);
         crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut later = crossings.into_iter();
-        let (first, enters) = later.next()?;
-        // A ray that begins inside has entered already.
-        let enter = if enters { first } else { 0.0 };
-        let leave = if enters { later.next().map_or(2.0 * deepest, |(t, _)| t) } else { first };
+        let &(first, enters) = crossings.first()?;
+        // A ray may begin inside already. Where what is crossed bends, it soon comes out of there and crosses it.
+        let is_inside = !enters && (first > crossed || crossings.len() == 1);
+        let at = |i: usize| crossings.get(i).map_or(2.0 * deepest, |&(t, _)| t);
+        let [enter, leave] = match (enters, is_inside) {
+            (true, _) => [first, at(1)],
+            (false, true) => [0.0, first],
+            (false, false) => [at(1), at(2)],
+        };
         (enter <= deepest).then_some(Hit { enter, leave })
     }
 }

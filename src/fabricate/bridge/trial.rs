@@ -8,6 +8,7 @@
 
 use glam::DVec2;
 
+use super::BridgeOptions;
 use super::ground::{Ground, Side};
 use crate::planar::{FillRule, GridPoint, Region};
 
@@ -15,6 +16,8 @@ use crate::planar::{FillRule, GridPoint, Region};
 const GRADES: [f64; 3] = [0.35, 0.2, 0.08];
 /// The grade of a bridge that withstands what is required and no more; one grade more and it does not.
 pub(super) const REQUIRED: usize = GRADES.len();
+/// What every bridge withstands, in chord errors: two of half of it meet in a fitted curve.
+const LEAST_CHORDS: f64 = 0.75;
 /// The window reaches so far beyond the bridge, in widths, so that what it holds on to is seen.
 const WINDOW: f64 = 2.0;
 /// The required erosion is exceeded by this, as a width that just holds is lost in rounding.
@@ -40,6 +43,8 @@ pub(super) struct Site<'a> {
     erosion_mm: f64,
     /// Dilation of the material that is required.
     dilation_mm: f64,
+    /// Erosion and dilation of the material without which curves could not be fitted to it.
+    least_mm: f64,
     /// Bridges laid, counter-clockwise.
     laid: Vec<Laid>,
 }
@@ -51,14 +56,16 @@ struct Laid {
 }
 
 impl<'a> Site<'a> {
-    /// Without bridges yet. `min_mm` are the narrowest ink and the narrowest gap that must be.
-    pub(super) fn new(ground: &'a Ground, side: Side, width_mm: f64, min_mm: [f64; 2]) -> Self {
-        let [feature, gap] = min_mm.map(|mm| 0.5 * mm * SURPLUS);
+    /// Without bridges yet.
+    pub(super) fn new(ground: &'a Ground, side: Side, width_mm: f64, options: &BridgeOptions) -> Self {
+        let half = |mm: f64| 0.5 * mm * SURPLUS;
+        let (feature, gap) = (half(options.min_feature_mm), half(options.min_gap_mm));
         let (erosion_mm, dilation_mm) = match side {
             Side::Gap => (feature, gap),
             Side::Ink => (gap, feature),
         };
-        Self { ground, side, width_mm, erosion_mm, dilation_mm, laid: Vec::new() }
+        let least_mm = LEAST_CHORDS * options.chord_mm;
+        Self { ground, side, width_mm, erosion_mm, dilation_mm, least_mm, laid: Vec::new() }
     }
 
     /// Lays a bridge.
@@ -94,10 +101,8 @@ impl<'a> Site<'a> {
             return None;
         }
         let area_mm2 = with.area_mm2() - without.area_mm2();
-        let withstands = |part: f64| {
+        let withstands = |[erosion_mm, dilation_mm]: [f64; 2]| {
             let eroded = |r: f64| Change::between(&offset(&without, -r), &offset(&with, -r));
-            let erosion_mm = self.erosion_mm.max(part * self.width_mm);
-            let dilation_mm = self.dilation_mm.max(part * self.width_mm);
             if erosion_mm > 0.0 && !eroded(erosion_mm).is_bridge(joins) {
                 return false;
             }
@@ -107,7 +112,10 @@ impl<'a> Site<'a> {
                 change.is_bridge(joins) || (length_mm < 2.5 * dilation_mm && change.is_none())
             }
         };
-        let grade = GRADES.into_iter().chain([0.0]).position(withstands).unwrap_or(REQUIRED + 1);
+        let graded = GRADES.into_iter().chain([0.0]).map(|part| {
+            [self.erosion_mm, self.dilation_mm].map(|mm| mm.max(part * self.width_mm).max(self.least_mm))
+        });
+        let grade = graded.chain([[self.least_mm; 2]]).position(withstands)?;
         Some(Verdict { grade, area_mm2 })
     }
 
