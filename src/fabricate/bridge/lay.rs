@@ -104,7 +104,8 @@ impl Layer<'_> {
             let second = std::mem::take(&mut again).into_iter().map(|link| (link, false));
             for (link, is_first) in second.chain(fresh.into_iter().map(|link| (link, true))) {
                 let [a, b] = link.rims.map(|rim| ground.node(rim, side));
-                if self.is_done() || !sets.may_join(a, b) {
+                // What lies between two contours is nearer to both: it has been tried already, and had no place.
+                if self.is_done() || !sets.may_join(a, b) || !self.prober.is_clear(link.ends) {
                     continue;
                 }
                 let [part, widths] = if is_first { DETOUR } else { LONG_DETOUR };

@@ -16,12 +16,14 @@ pub(super) struct Link {
     pub(super) rims: [usize; 2],
     /// How far they are apart, in millimetres.
     pub(super) distance_mm: f64,
+    /// The nearest points, on either of them.
+    pub(super) ends: [DVec2; 2],
 }
 
-/// The least distance between points of two contours, if it is at most `reach`.
-pub(super) fn distance(a: &Rim, b: &Rim, reach: f64) -> Option<f64> {
+/// The nearest points of two contours, if they are at most `reach` apart.
+pub(super) fn nearest(a: &Rim, b: &Rim, reach: f64) -> Option<[DVec2; 2]> {
     let mut best = reach;
-    let mut found = false;
+    let mut found = None;
     for (x, y) in [(a, b), (b, a)] {
         let margin = DVec2::splat(best);
         for edge in x.edges_in(y.low - margin, y.high + margin) {
@@ -29,13 +31,13 @@ pub(super) fn distance(a: &Rim, b: &Rim, reach: f64) -> Option<f64> {
             if y.box_distance(p) > best {
                 continue;
             }
-            let d = y.nearest(p).distance(p);
-            if d <= best {
-                (best, found) = (d, true);
+            let q = y.nearest(p);
+            if q.distance(p) <= best {
+                (best, found) = (q.distance(p), Some([p, q]));
             }
         }
     }
-    found.then_some(best)
+    found
 }
 
 /// All links of length in (`over`, `reach`] within cells of `side`, the shortest first, between nodes that
@@ -62,8 +64,11 @@ pub(super) fn links(
             {
                 continue;
             }
-            if let Some(distance_mm) = distance(from, to, reach).filter(|&d| d > over) {
-                links.push(Link { rims: [a.min(b), a.max(b)], distance_mm });
+            if let Some(ends) = nearest(from, to, reach) {
+                let distance_mm = ends[0].distance(ends[1]);
+                if distance_mm > over {
+                    links.push(Link { rims: [a.min(b), a.max(b)], distance_mm, ends });
+                }
             }
         }
     }

@@ -157,3 +157,6 @@ pub fn bridge(region: &Region, wanted: Counts, options: &BridgeOptions) -> Resul
     debug_assert_eq!(Counts::of(&bridged.region), wanted);
     Ok(bridged)
 }
+
+#[cfg(test)]
+mod tests;

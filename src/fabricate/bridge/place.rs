@@ -23,6 +23,8 @@ const SINK: f64 = 0.15;
 const LOOK: f64 = 1.5;
 /// How far the edge of a bridge may lie off what is crossed, where that bends, as part of the width.
 const BEND: f64 = 0.6;
+/// Crossings within this part of a way from its ends are those of the contours that it leads to.
+const END: f64 = 1e-6;
 /// What is paid for ends that are not square, for each millimetre that one edge of the bridge is longer.
 const SKEW: f64 = 0.5;
 /// What is paid for a ray that finds nothing to hold on to, as part of the width.
@@ -87,6 +89,17 @@ impl Prober<'_> {
         let shortest = axes.iter().copied().min_by(|a, b| (a[0] - a[1]).length().total_cmp(&(b[0] - b[1]).length()));
         let axes = axes.into_iter().step_by(stride).chain(shortest);
         self.ranked(axes.filter_map(|[p, q]| self.probe(p, q)), MOST_TRIALS)
+    }
+
+    /// Whether no contour crosses the way between two points of contours.
+    pub(super) fn is_clear(&self, [p, q]: [DVec2; 2]) -> bool {
+        let ahead = q - p;
+        !self.index.in_box(p.min(q), p.max(q)).any(|edge| {
+            let (a, b) = (ahead.perp_dot(edge.from - p), ahead.perp_dot(edge.to - p));
+            let across = ahead.dot(edge.from - p) + ahead.dot(edge.to - edge.from) * (a / (a - b));
+            let part = across / ahead.length_squared();
+            (a > 0.0) != (b > 0.0) && (END..1.0 - END).contains(&part)
+        })
     }
 
     /// Points of an edge: its beginning, and more where it is long.
