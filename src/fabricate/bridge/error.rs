@@ -26,13 +26,13 @@ pub enum BridgeError {
         why: &'static str,
     },
     /// There is no place left for a bridge.
-    #[error("{laid} of the {needed} {} could be laid; there is no place for another one {width_mm} mm wide; narrower ones may find a place", what(*kind))]
+    #[error("{done} of {needed} {}; there is no place for another {} {width_mm} mm wide; a narrower one may find a place", what(*kind), if kind.is_strut() { "strut" } else { "slit" })]
     NoPlace {
         /// What the bridge was for.
         kind: BridgeKind,
-        /// How many found a place.
-        laid: usize,
-        /// How many are needed.
+        /// By how many the count was changed.
+        done: usize,
+        /// By how many it had to be.
         needed: usize,
         /// How wide they are.
         width_mm: f64,
@@ -41,10 +41,10 @@ pub enum BridgeError {
 
 fn what(kind: BridgeKind) -> &'static str {
     match kind {
-        BridgeKind::Join => "struts that join components",
-        BridgeKind::Enclose => "struts that close bays to holes",
-        BridgeKind::Open => "slits that open holes",
-        BridgeKind::Split => "slits that cut components in two",
+        BridgeKind::Join => "superfluous components were joined to others",
+        BridgeKind::Enclose => "missing holes were made by closing bays",
+        BridgeKind::Open => "superfluous holes were opened",
+        BridgeKind::Split => "missing components were made by cutting strands",
     }
 }
 

@@ -50,6 +50,7 @@ pub(super) fn lay(
             has,
             careful,
             extent_mm: low.distance(high),
+            done: 0,
             bridges: Vec::new(),
         };
         if kind == BridgeKind::Join || kind == BridgeKind::Open {
@@ -58,16 +59,15 @@ pub(super) fn lay(
         } else {
             layer.close();
         }
-        let laid = layer.bridges.len();
-        if laid < needed {
-            return Err(BridgeError::NoPlace { kind, laid, needed, width_mm });
+        if !layer.is_done() {
+            return Err(BridgeError::NoPlace { kind, done: layer.done, needed, width_mm });
         }
         let built = layer.site.built();
         if Counts::of(&built) == kind.changed(has, needed) {
             return Ok(Bridged { region: built, bridges: layer.bridges });
         }
     }
-    Err(BridgeError::NoPlace { kind, laid: 0, needed, width_mm })
+    Err(BridgeError::NoPlace { kind, done: 0, needed, width_mm })
 }
 
 fn nearest_step(grid: Grid, p: glam::DVec2) -> GridPoint {
@@ -84,12 +84,14 @@ struct Layer<'a> {
     /// Whether the whole is counted after each bridge.
     careful: bool,
     extent_mm: f64,
+    /// By how many the count has been changed.
+    done: usize,
     bridges: Vec<Bridge>,
 }
 
 impl Layer<'_> {
     fn is_done(&self) -> bool {
-        self.bridges.len() == self.needed
+        self.done == self.needed
     }
 
     /// Joins the nearest nodes first (Kruskal's minimum spanning forest), but never the two of `apart`.
@@ -110,9 +112,10 @@ impl Layer<'_> {
                 }
                 let [part, widths] = if is_first { DETOUR } else { LONG_DETOUR };
                 let limit = (1.0 + part) * link.distance_mm + widths * self.prober.width_mm;
-                if self.lay_best(&self.prober.between(link.rims, limit), link.distance_mm) {
-                    sets.join(a, b);
-                } else if is_first {
+                // Where more than two come close, a bridge may have no room to join two only.
+                let most = if is_first { 1 } else { self.needed - self.done };
+                let places = self.prober.between(link.rims, limit);
+                if !self.lay_best(&places, link.distance_mm, most, &mut sets) && is_first {
                     again.push(link);
                 }
             }
@@ -134,7 +137,7 @@ impl Layer<'_> {
                     if self.is_beside(place) {
                         continue;
                     }
-                    if let Some(verdict) = self.verdict(place, false).filter(|v| v.grade <= worst) {
+                    if let Some(verdict) = self.verdict(place, 0).filter(|v| v.grade <= worst) {
                         self.lay(place, verdict, place.length_mm());
                     }
                 }
@@ -154,8 +157,8 @@ impl Layer<'_> {
         })
     }
 
-    /// Lays the bridge at the best of these places; `false` when none will do.
-    fn lay_best(&mut self, places: &[Place], least_mm: f64) -> bool {
+    /// Lays the bridge that joins at most `most` at the best of these places; `false` when none will do.
+    fn lay_best(&mut self, places: &[Place], least_mm: f64, most: usize, sets: &mut Sets) -> bool {
         let mut passed: Vec<(f64, &Place, Verdict)> = Vec::new();
         let mut least = f64::INFINITY;
         for place in places {
@@ -163,7 +166,8 @@ impl Layer<'_> {
             if place.score >= least {
                 break;
             }
-            if let Some(verdict) = self.verdict(place, true) {
+            let verdict = self.verdict(place, most);
+            if let Some(verdict) = verdict.filter(|v| sets.can_join_all(&self.touched(place), v.changes)) {
                 let fails = if verdict.grade > REQUIRED { REQUIRED_WORTH } else { 0.0 };
                 let worth = GRADE_WORTH * verdict.grade as f64 + fails;
                 let cost = place.score + worth * self.prober.width_mm;
@@ -172,23 +176,40 @@ impl Layer<'_> {
             }
         }
         passed.sort_by(|a, b| a.0.total_cmp(&b.0));
-        passed.into_iter().any(|(_, place, verdict)| self.lay(place, verdict, least_mm))
+        let laid = passed.into_iter().find(|(_, place, verdict)| self.lay(place, *verdict, least_mm));
+        if let Some((_, place, _)) = laid {
+            let touched = self.touched(place);
+            touched.windows(2).for_each(|pair| sets.join(pair[0], pair[1]));
+        }
+        laid.is_some()
     }
 
-    fn verdict(&self, place: &Place, joins: bool) -> Option<Verdict> {
+    /// What a bridge at this place meets, each once.
+    fn touched(&self, place: &Place) -> Vec<usize> {
+        let (ground, side) = (self.prober.ground, self.prober.side);
+        let mut nodes: Vec<usize> =
+            self.prober.met(&place.corners).into_iter().map(|rim| ground.node(rim, side)).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+
+    fn verdict(&self, place: &Place, joins: usize) -> Option<Verdict> {
         self.site.try_out(&place.corners, place.length_mm(), joins)
     }
 
     /// Lays a bridge; `false` when the whole was counted and the bridge taken up again.
     fn lay(&mut self, place: &Place, verdict: Verdict, least_mm: f64) -> bool {
         self.site.lay(&place.corners);
-        let wanted = self.kind.changed(self.has, self.bridges.len() + 1);
+        let wanted = self.kind.changed(self.has, self.done + verdict.changes);
         if self.careful && Counts::of(&self.site.built()) != wanted {
             self.site.take_up();
             return false;
         }
+        self.done += verdict.changes;
         self.bridges.push(Bridge {
             kind: self.kind,
+            changes: verdict.changes,
             from_mm: place.from.to_array(),
             to_mm: place.to.to_array(),
             width_mm: self.prober.width_mm,
@@ -224,6 +245,15 @@ impl Sets {
         let (a, b) = (self.root(a), self.root(b));
         let kept = self.apart.map(|[x, y]| [self.root(x), self.root(y)]);
         a != b && kept != Some([a, b]) && kept != Some([b, a])
+    }
+
+    /// Whether these are `changes` more than one that are not joined yet, and may be.
+    fn can_join_all(&mut self, nodes: &[usize], changes: usize) -> bool {
+        let mut roots: Vec<usize> = nodes.iter().map(|&node| self.root(node)).collect();
+        roots.sort_unstable();
+        roots.dedup();
+        let kept = self.apart.map(|pair| pair.map(|node| self.root(node)));
+        roots.len() == changes + 1 && !kept.is_some_and(|pair| pair.iter().all(|node| roots.contains(node)))
     }
 
     fn join(&mut self, a: usize, b: usize) {

@@ -108,6 +108,8 @@ impl BridgeKind {
 pub struct Bridge {
     /// What it is for.
     pub kind: BridgeKind,
+    /// By how many it changes the count: 1, or more where there is no room to join two only.
+    pub changes: usize,
     /// Where its axis begins, on a boundary.
     pub from_mm: [f64; 2],
     /// Where its axis ends, on a boundary.

@@ -102,6 +102,24 @@ impl Prober<'_> {
         })
     }
 
+    /// The contours that have a point within these corners.
+    pub(super) fn met(&self, corners: &[DVec2; 4]) -> Vec<usize> {
+        let (mut low, mut high) = (corners[0], corners[0]);
+        corners.iter().for_each(|&p| (low, high) = (low.min(p), high.max(p)));
+        // An edge meets a convex polygon unless it lies beyond one of its sides, or all corners beside the edge.
+        let beyond = |a: DVec2, b: DVec2| {
+            (0..4).any(|i| {
+                let side = corners[(i + 1) % 4] - corners[i];
+                side.perp_dot(a - corners[i]) < 0.0 && side.perp_dot(b - corners[i]) < 0.0
+            }) || [1.0, -1.0].iter().any(|sign| corners.iter().all(|&c| sign * (b - a).perp_dot(c - a) < 0.0))
+        };
+        let edges = self.index.in_box(low, high).filter(|edge| !beyond(edge.from, edge.to));
+        let mut rims: Vec<usize> = edges.map(|edge| edge.contour).collect();
+        rims.sort_unstable();
+        rims.dedup();
+        rims
+    }
+
     /// Points of an edge: its beginning, and more where it is long.
     pub(super) fn along(&self, from: DVec2, to: DVec2) -> impl Iterator<Item = DVec2> + use<> {
         let count = (from.distance(to) / (SPACING * self.width_mm)).ceil().max(1.0) as usize;

@@ -30,6 +30,8 @@ const ARC: f64 = 0.03;
 pub(super) struct Verdict {
     /// 0 is the best; see [`GRADES`].
     pub(super) grade: usize,
+    /// By how many it changes the count.
+    pub(super) changes: usize,
     /// The material that is added or taken away, in square millimetres.
     pub(super) area_mm2: f64,
 }
@@ -88,8 +90,9 @@ impl<'a> Site<'a> {
         Region::fill(self.ground.grid, &ink.chain(laid).collect::<Vec<_>>(), FillRule::Positive)
     }
 
-    /// Tries a bridge between places `length_mm` apart; `None` when it does not do what it should.
-    pub(super) fn try_out(&self, corners: &[DVec2; 4], length_mm: f64, joins: bool) -> Option<Verdict> {
+    /// Tries a bridge between places `length_mm` apart, which may join one with up to `joins` others, or make one
+    /// loop when that is 0; `None` when it does not do so.
+    pub(super) fn try_out(&self, corners: &[DVec2; 4], length_mm: f64, joins: usize) -> Option<Verdict> {
         let bridge = self.on_grid(corners);
         let largest = self.width_mm.max(2.0 * self.erosion_mm).max(2.0 * self.dilation_mm);
         let mut paths = self.window(bridge.low - WINDOW * largest, bridge.high + WINDOW * largest);
@@ -97,26 +100,24 @@ impl<'a> Site<'a> {
         paths.push(bridge.path);
         let with = Region::fill(self.ground.grid, &paths, FillRule::Positive);
         let change = Change::between(&without, &with);
-        if !change.is_bridge(joins) {
-            return None;
-        }
+        let changes = (1..=joins.max(1)).find(|&changes| change.is_bridge(joins, changes))?;
         let area_mm2 = with.area_mm2() - without.area_mm2();
         let withstands = |[erosion_mm, dilation_mm]: [f64; 2]| {
             let eroded = |r: f64| Change::between(&offset(&without, -r), &offset(&with, -r));
-            if erosion_mm > 0.0 && !eroded(erosion_mm).is_bridge(joins) {
+            if erosion_mm > 0.0 && !eroded(erosion_mm).is_bridge(joins, changes) {
                 return false;
             }
             // Dilated far enough, both sides of a short bridge meet without it.
             dilation_mm == 0.0 || {
                 let change = eroded(-dilation_mm);
-                change.is_bridge(joins) || (length_mm < 2.5 * dilation_mm && change.is_none())
+                change.is_bridge(joins, changes) || (length_mm < 2.5 * dilation_mm && change.is_none())
             }
         };
         let graded = GRADES.into_iter().chain([0.0]).map(|part| {
             [self.erosion_mm, self.dilation_mm].map(|mm| mm.max(part * self.width_mm).max(self.least_mm))
         });
         let grade = graded.chain([[self.least_mm; 2]]).position(withstands)?;
-        Some(Verdict { grade, area_mm2 })
+        Some(Verdict { grade, changes, area_mm2 })
     }
 
     fn on_grid(&self, corners: &[DVec2; 4]) -> Laid {
@@ -166,10 +167,11 @@ impl Change {
         }
     }
 
-    /// Whether it joins, or makes a loop: whether two ends of a loop hang together is not always to be seen in
-    /// the window.
-    fn is_bridge(self, joins: bool) -> bool {
-        (self.components, self.holes) == (-1, 0) || (!joins && (self.components, self.holes) == (0, 1))
+    /// Whether it joins so many, or makes a loop when it may join none: whether the two ends of a loop hang
+    /// together is not always to be seen in the window.
+    fn is_bridge(self, joins: usize, changes: usize) -> bool {
+        let found = (self.components, self.holes);
+        found == (-(changes as isize), 0) || (joins == 0 && found == (0, 1))
     }
 
     fn is_none(self) -> bool {
