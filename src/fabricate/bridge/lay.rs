@@ -9,10 +9,24 @@ use crate::planar::{EdgeIndex, Grid, GridPoint, Region};
 
 /// A machine's narrowest width is exceeded by this: what is just as wide is lost in rounding.
 const SPARE: f64 = 1.05;
-/// A place may be so much farther than the nearest, in parts of its distance and in widths, if it is better.
-const DETOUR: [f64; 2] = [0.3, 1.0];
-/// The same where there was no place so near.
-const LONG_DETOUR: [f64; 2] = [2.0, 4.0];
+/// How hard a place is looked for. A link that finds none is tried again more generously after links a little
+/// longer had their turn.
+const TRIES: [Try; 4] = [
+    Try { detour: [0.3, 1.0], wider: 1.0, is_alone: true },
+    Try { detour: [2.0, 4.0], wider: 1.0, is_alone: false },
+    // Where many parts nearly touch, a wide bridge covers the pockets that a narrow one would cut off.
+    Try { detour: [0.3, 1.0], wider: 1.6, is_alone: false },
+    Try { detour: [0.3, 1.0], wider: 2.5, is_alone: false },
+];
+
+struct Try {
+    /// A place may be so much farther than the nearest, in parts of its distance and in widths, if it is better.
+    detour: [f64; 2],
+    /// The width of the bridge, in parts of what was asked for.
+    wider: f64,
+    /// Whether it may join two only.
+    is_alone: bool,
+}
 /// What each grade of hold is worth, in widths of length, and what it is worth to do what the machine requires.
 const GRADE_WORTH: f64 = 0.5;
 const REQUIRED_WORTH: f64 = 10.0;
@@ -100,23 +114,25 @@ impl Layer<'_> {
         let mut sets = Sets::new(ground.nodes(side), apart);
         let (mut over, mut reach) = (-1.0, self.prober.width_mm);
         // Links without a place for a bridge: when longer ones are taken, they too may take a longer way.
-        let mut again: Vec<Link> = Vec::new();
+        let mut again: Vec<(Link, usize)> = Vec::new();
         while !self.is_done() && (over <= self.extent_mm || !again.is_empty()) {
             let fresh = links(ground, side, over, reach, |a, b| sets.may_join(a, b));
-            let second = std::mem::take(&mut again).into_iter().map(|link| (link, false));
-            for (link, is_first) in second.chain(fresh.into_iter().map(|link| (link, true))) {
+            let fresh = fresh.into_iter().map(|link| (link, 0));
+            for (link, number) in std::mem::take(&mut again).into_iter().chain(fresh) {
                 let [a, b] = link.rims.map(|rim| ground.node(rim, side));
                 // What lies between two contours is nearer to both: it has been tried already, and had no place.
                 if self.is_done() || !sets.may_join(a, b) || !self.prober.is_clear(link.ends) {
                     continue;
                 }
-                let [part, widths] = if is_first { DETOUR } else { LONG_DETOUR };
+                let Try { detour: [part, widths], wider, is_alone } = TRIES[number];
                 let limit = (1.0 + part) * link.distance_mm + widths * self.prober.width_mm;
                 // Where more than two come close, a bridge may have no room to join two only.
-                let most = if is_first { 1 } else { self.needed - self.done };
-                let places = self.prober.between(link.rims, limit);
-                if !self.lay_best(&places, link.distance_mm, most, &mut sets) && is_first {
-                    again.push(link);
+                let most = if is_alone { 1 } else { self.needed - self.done };
+                let prober = Prober { width_mm: wider * self.prober.width_mm, ..self.prober };
+                let places = prober.between(link.rims, limit);
+                let is_laid = self.lay_best(&places, link.distance_mm, most, &mut sets);
+                if !is_laid && number + 1 < TRIES.len() {
+                    again.push((link, number + 1));
                 }
             }
             (over, reach) = (reach, 2.0 * reach);
@@ -212,7 +228,7 @@ impl Layer<'_> {
             changes: verdict.changes,
             from_mm: place.from.to_array(),
             to_mm: place.to.to_array(),
-            width_mm: self.prober.width_mm,
+            width_mm: place.width_mm(),
             length_mm: place.length_mm(),
             least_mm,
             area_mm2: verdict.area_mm2,

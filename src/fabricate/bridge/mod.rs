@@ -114,7 +114,8 @@ pub struct Bridge {
     pub from_mm: [f64; 2],
     /// Where its axis ends, on a boundary.
     pub to_mm: [f64; 2],
-    /// Its width.
+    /// Its width: as asked for, or more where the machine needs it or parts lie so close that a narrower one
+    /// would cut off pockets.
     pub width_mm: f64,
     /// The length of its axis between the boundaries.
     pub length_mm: f64,

@@ -51,6 +51,10 @@ impl Place {
         0.5 * (self.from + self.to)
     }
 
+    pub(super) fn width_mm(&self) -> f64 {
+        self.corners[0].distance(self.corners[3])
+    }
+
     pub(super) fn length_mm(&self) -> f64 {
         self.from.distance(self.to)
     }

@@ -127,7 +127,8 @@ proptest! {
         prop_assert!((bridged.region.area_mm2() - region.area_mm2() - changed).abs() < 1e-4);
         for b in &bridged.bridges {
             let [c0, c1, _, c3] = b.corners_mm.map(DVec2::from);
-            prop_assert!((c0.distance(c3) - width).abs() < 1e-9, "a bridge is as wide as it says");
+            prop_assert!((c0.distance(c3) - b.width_mm).abs() < 1e-9, "a bridge is as wide as it says");
+            prop_assert!(b.width_mm > width - 1e-9, "none is narrower than asked for");
             prop_assert!(c0.distance(c1) >= b.length_mm, "its ends are sunk");
             prop_assert!(b.length_mm >= b.least_mm - 1e-9);
         }
