@@ -154,7 +154,7 @@ impl Layer<'_> {
                         continue;
                     }
                     if let Some(verdict) = self.verdict(place, 0).filter(|v| v.grade <= worst) {
-                        self.lay(place, verdict, place.length_mm());
+                        self.lay(place, &verdict, place.length_mm());
                     }
                 }
             }
@@ -163,6 +163,10 @@ impl Layer<'_> {
             }
             reach *= 2.0;
         }
+    }
+
+    fn in_mm(&self, path: &[GridPoint]) -> Vec<[f64; 2]> {
+        path.iter().map(|&p| self.prober.ground.grid.to_mm(p).to_array()).collect()
     }
 
     fn is_beside(&self, place: &Place) -> bool {
@@ -192,7 +196,7 @@ impl Layer<'_> {
             }
         }
         passed.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let laid = passed.into_iter().find(|(_, place, verdict)| self.lay(place, *verdict, least_mm));
+        let laid = passed.into_iter().find(|(_, place, verdict)| self.lay(place, verdict, least_mm));
         if let Some((_, place, _)) = laid {
             let touched = self.touched(place);
             touched.windows(2).for_each(|pair| sets.join(pair[0], pair[1]));
@@ -215,11 +219,11 @@ impl Layer<'_> {
     }
 
     /// Lays a bridge; `false` when the whole was counted and the bridge taken up again.
-    fn lay(&mut self, place: &Place, verdict: Verdict, least_mm: f64) -> bool {
-        self.site.lay(&place.corners);
+    fn lay(&mut self, place: &Place, verdict: &Verdict, least_mm: f64) -> bool {
+        self.site.lay(&place.corners, &verdict.pockets);
         let wanted = self.kind.changed(self.has, self.done + verdict.changes);
         if self.careful && Counts::of(&self.site.built()) != wanted {
-            self.site.take_up();
+            self.site.take_up(verdict.pockets.len());
             return false;
         }
         self.done += verdict.changes;
@@ -233,6 +237,7 @@ impl Layer<'_> {
             least_mm,
             area_mm2: verdict.area_mm2,
             corners_mm: place.corners.map(|p| p.to_array()),
+            pockets_mm: verdict.pockets.iter().map(|path| self.in_mm(path)).collect(),
         });
         true
     }

@@ -125,6 +125,10 @@ pub struct Bridge {
     pub area_mm2: f64,
     /// Its corners, counter-clockwise; the ends are sunk into what it joins.
     pub corners_mm: [[f64; 2]; 4],
+    /// Outlines of small pockets beside it, which it would have cut off and which are filled with it (beside a slit:
+    /// crumbs that would have fallen out). Mostly there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub pockets_mm: Vec<Vec<[f64; 2]>>,
 }
 
 /// A region with bridges.
@@ -138,7 +142,7 @@ pub struct Bridged {
 
 /// `region` with exactly the `wanted` counts, by as few bridges as can be and as little material.
 ///
-/// Nothing outside of the bridges' corners is changed. The same arguments give the same result.
+/// Nothing outside of the bridges' corners and pockets is changed. The same arguments give the same result.
 ///
 /// # Errors
 /// [`BridgeError`] for options out of range, counts that no region has, and when there is no place for a bridge.

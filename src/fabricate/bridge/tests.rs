@@ -35,7 +35,11 @@ fn left_over(a: &Region, b: &Region, bridges: &[Bridge]) -> f64 {
     let reversed = |path: Vec<GridPoint>| path.into_iter().rev().collect::<Vec<_>>();
     let mut paths: Vec<Vec<GridPoint>> = a.contours().map(|c| c.points().to_vec()).collect();
     paths.extend(b.contours().map(|c| reversed(c.points().to_vec())));
-    paths.extend(bridges.iter().map(|bridge| reversed(on_grid(&bridge.corners_mm.map(DVec2::from)))));
+    for bridge in bridges {
+        paths.push(reversed(on_grid(&bridge.corners_mm.map(DVec2::from))));
+        let pockets = bridge.pockets_mm.iter().map(|pocket| pocket.iter().map(|&p| DVec2::from(p)).collect());
+        paths.extend(pockets.map(|pocket: Vec<DVec2>| reversed(on_grid(&pocket))));
+    }
     Region::fill(a.grid(), &paths, FillRule::Positive).area_mm2()
 }
 

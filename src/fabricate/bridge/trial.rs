@@ -4,13 +4,16 @@
 //! change by what the counts of the whole change by. With M the material (ink for a strut, gap for a slit) and S
 //! the bridge, a bridge that joins makes one component fewer of M and no other hole; one that makes a loop takes
 //! one off the Euler characteristic. The same must hold of M eroded, or the bridge hangs on by a sliver, and of
-//! M dilated, or it leaves a slot beside itself. How much erosion a place withstands ranks it.
+//! M dilated, or it leaves a slot beside itself. In a crowd of parts a bridge may cut off small pockets: as a last
+//! resort these are filled with it (of ink: a crumb that would fall out is taken away).
+//!
+//!  How much erosion a place withstands ranks it.
 
 use glam::DVec2;
 
 use super::BridgeOptions;
 use super::ground::{Ground, Side};
-use crate::planar::{FillRule, GridPoint, Region};
+use crate::planar::{Contour, FillRule, Grid, GridPoint, Region};
 
 /// Erosions that a good bridge withstands, as parts of its width, the best first; then only what is required.
 const GRADES: [f64; 3] = [0.35, 0.2, 0.08];
@@ -22,16 +25,20 @@ const LEAST_CHORDS: f64 = 0.75;
 const WINDOW: f64 = 2.0;
 /// The required erosion is exceeded by this, as a width that just holds is lost in rounding.
 const SURPLUS: f64 = 1.02;
+/// The largest pocket that is filled, in squares of the width: more is a hole of its own.
+const LARGEST_POCKET: f64 = 1.5;
 /// Arcs of eroded corners, as part of the radius.
 const ARC: f64 = 0.03;
 
 /// How a bridge passed.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Verdict {
     /// 0 is the best; see [`GRADES`].
     pub(super) grade: usize,
     /// By how many it changes the count.
     pub(super) changes: usize,
+    /// Pockets that the bridge would cut off and that are filled with it, counter-clockwise.
+    pub(super) pockets: Vec<Vec<GridPoint>>,
     /// The material that is added or taken away, in square millimetres.
     pub(super) area_mm2: f64,
 }
@@ -57,6 +64,15 @@ struct Laid {
     high: DVec2,
 }
 
+impl Laid {
+    fn new(grid: Grid, path: Vec<GridPoint>) -> Self {
+        let corners = || path.iter().map(|&p| grid.to_mm(p));
+        let low = corners().reduce(DVec2::min).unwrap_or_default();
+        let high = corners().reduce(DVec2::max).unwrap_or_default();
+        Self { path, low, high }
+    }
+}
+
 impl<'a> Site<'a> {
     /// Without bridges yet.
     pub(super) fn new(ground: &'a Ground, side: Side, width_mm: f64, options: &BridgeOptions) -> Self {
@@ -70,14 +86,16 @@ impl<'a> Site<'a> {
         Self { ground, side, width_mm, erosion_mm, dilation_mm, least_mm, laid: Vec::new() }
     }
 
-    /// Lays a bridge.
-    pub(super) fn lay(&mut self, corners: &[DVec2; 4]) {
+    /// Lays a bridge and fills its pockets.
+    pub(super) fn lay(&mut self, corners: &[DVec2; 4], pockets: &[Vec<GridPoint>]) {
+        let grid = self.ground.grid;
         self.laid.push(self.on_grid(corners));
+        self.laid.extend(pockets.iter().map(|path| Laid::new(grid, path.clone())));
     }
 
-    /// Takes up the bridge that was laid last.
-    pub(super) fn take_up(&mut self) {
-        self.laid.pop();
+    /// Takes up the bridge that was laid last, with so many pockets.
+    pub(super) fn take_up(&mut self, pockets: usize) {
+        self.laid.truncate(self.laid.len() - 1 - pockets);
     }
 
     /// The region with everything that was laid.
@@ -98,8 +116,15 @@ impl<'a> Site<'a> {
         let mut paths = self.window(bridge.low - WINDOW * largest, bridge.high + WINDOW * largest);
         let without = Region::fill(self.ground.grid, &paths, FillRule::Positive);
         paths.push(bridge.path);
-        let with = Region::fill(self.ground.grid, &paths, FillRule::Positive);
-        let change = Change::between(&without, &with);
+        let mut with = Region::fill(self.ground.grid, &paths, FillRule::Positive);
+        let mut change = Change::between(&without, &with);
+        let mut pockets = Vec::new();
+        if joins > 1 && change.holes > 0 {
+            pockets = self.pockets(&without, &with, change.holes as usize)?;
+            paths.extend(pockets.iter().cloned());
+            with = Region::fill(self.ground.grid, &paths, FillRule::Positive);
+            change = Change::between(&without, &with);
+        }
         let changes = (1..=joins.max(1)).find(|&changes| change.is_bridge(joins, changes))?;
         let area_mm2 = with.area_mm2() - without.area_mm2();
         let withstands = |[erosion_mm, dilation_mm]: [f64; 2]| {
@@ -117,15 +142,27 @@ impl<'a> Site<'a> {
             [self.erosion_mm, self.dilation_mm].map(|mm| mm.max(part * self.width_mm).max(self.least_mm))
         });
         let grade = graded.chain([[self.least_mm; 2]]).position(withstands)?;
-        Some(Verdict { grade, changes, area_mm2 })
+        Some(Verdict { grade, changes, pockets, area_mm2 })
+    }
+
+    /// The smallest holes that are new, if they are small.
+    fn pockets(&self, without: &Region, with: &Region, count: usize) -> Option<Vec<Vec<GridPoint>>> {
+        let holes = |region: &Region| -> Vec<Contour> {
+            region.contours().filter(|c| !c.is_counter_clockwise()).cloned().collect()
+        };
+        let before = holes(without);
+        let mut new = holes(with);
+        new.retain(|hole| !before.contains(hole));
+        new.sort_by_key(|hole| hole.doubled_area().abs());
+        new.truncate(count);
+        let largest = LARGEST_POCKET * self.width_mm * self.width_mm;
+        let are_small = new.iter().all(|hole| hole.area_mm2(self.ground.grid).abs() <= largest);
+        are_small.then(|| new.iter().map(|hole| hole.points().iter().rev().copied().collect()).collect())
     }
 
     fn on_grid(&self, corners: &[DVec2; 4]) -> Laid {
         let grid = self.ground.grid;
-        let path = corners.iter().map(|p| GridPoint::new(grid.steps(p.x), grid.steps(p.y))).collect();
-        let low = corners.iter().copied().reduce(DVec2::min).unwrap_or_default();
-        let high = corners.iter().copied().reduce(DVec2::max).unwrap_or_default();
-        Laid { path, low, high }
+        Laid::new(grid, corners.iter().map(|p| GridPoint::new(grid.steps(p.x), grid.steps(p.y))).collect())
     }
 
     /// Paths whose positive winding is the material in the window, with the bridges that were laid.
