@@ -215,7 +215,7 @@ impl Layer<'_> {
     }
 
     fn verdict(&self, place: &Place, joins: usize) -> Option<Verdict> {
-        self.site.try_out(&place.corners, place.length_mm(), joins)
+        self.site.try_out(&place.corners, joins)
     }
 
     /// Lays a bridge; `false` when the whole was counted and the bridge taken up again.

@@ -108,9 +108,9 @@ impl<'a> Site<'a> {
         Region::fill(self.ground.grid, &ink.chain(laid).collect::<Vec<_>>(), FillRule::Positive)
     }
 
-    /// Tries a bridge between places `length_mm` apart, which may join one with up to `joins` others, or make one
-    /// loop when that is 0; `None` when it does not do so.
-    pub(super) fn try_out(&self, corners: &[DVec2; 4], length_mm: f64, joins: usize) -> Option<Verdict> {
+    /// Tries a bridge that may join one with up to `joins` others, or make one loop when that is 0; `None` when it
+    /// does not do so.
+    pub(super) fn try_out(&self, corners: &[DVec2; 4], joins: usize) -> Option<Verdict> {
         let bridge = self.on_grid(corners);
         let largest = self.width_mm.max(2.0 * self.erosion_mm).max(2.0 * self.dilation_mm);
         let mut paths = self.window(bridge.low - WINDOW * largest, bridge.high + WINDOW * largest);
@@ -132,11 +132,7 @@ impl<'a> Site<'a> {
             if erosion_mm > 0.0 && !eroded(erosion_mm).is_bridge(joins, changes) {
                 return false;
             }
-            // Dilated far enough, both sides of a short bridge meet without it.
-            dilation_mm == 0.0 || {
-                let change = eroded(-dilation_mm);
-                change.is_bridge(joins, changes) || (length_mm < 2.5 * dilation_mm && change.is_none())
-            }
+            dilation_mm == 0.0 || eroded(-dilation_mm).adds_nothing(joins, changes)
         };
         let graded = GRADES.into_iter().chain([0.0]).map(|part| {
             [self.erosion_mm, self.dilation_mm].map(|mm| mm.max(part * self.width_mm).max(self.least_mm))
@@ -211,8 +207,11 @@ impl Change {
         found == (-(changes as isize), 0) || (joins == 0 && found == (0, 1))
     }
 
-    fn is_none(self) -> bool {
-        (self.components, self.holes) == (0, 0)
+    /// Whether no more is joined, and no slot beside the bridge becomes a hole. Dilated far enough, both sides of a
+    /// short bridge meet without it.
+    fn adds_nothing(self, joins: usize, changes: usize) -> bool {
+        let loops = if joins == 0 { 1 } else { 0 };
+        (-(changes as isize)..=0).contains(&self.components) && self.holes <= loops
     }
 }
 
