@@ -64,10 +64,12 @@ Examples:
 const EXTRUDE_HELP: &str = "\
 Lengths take mm, cm, in, pt or px (96 to the inch); a bare number is millimetres.
 
-Example:
+Examples:
   openwork extrude sign.svg --thickness 3mm -o sign.stl
+  A stencil in one piece from which nothing falls out:
+    openwork extrude letters.svg --bridge 1mm --components 1 --holes 0 -o stencil.stl
 
-Exit codes: 0 done; 2 the drawing or an argument is wrong; 4 the solid failed verification and nothing
+Exit codes: 0 done; 2 the drawing or an argument is wrong; 3 there is no place for a bridge; 4 the solid failed verification and nothing
 was written; 1 a bug of ours.";
 
 const VERIFY_HELP: &str = "\
@@ -181,6 +183,15 @@ pub(super) struct ExtrudeArguments {
     /// Thickness of the solid
     #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "2mm", allow_hyphen_values = true)]
     pub(super) thickness: f64,
+    /// Lay bridges of this width so that the drawing has the components and holes asked for: struts join, slits open
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    pub(super) bridge: Option<f64>,
+    /// Components that bridges are to make [default: as drawn]
+    #[arg(long, value_name = "N", requires = "bridge", allow_negative_numbers = true)]
+    pub(super) components: Option<usize>,
+    /// Holes that bridges are to make [default: as drawn]
+    #[arg(long, value_name = "N", requires = "bridge", allow_negative_numbers = true)]
+    pub(super) holes: Option<usize>,
     /// Greatest distance between a curve and its chords
     #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "0.01mm", allow_hyphen_values = true)]
     pub(super) chord: f64,

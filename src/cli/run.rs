@@ -13,7 +13,9 @@ use super::progress::Progress;
 use crate::analysis::{Analysis, AnalysisError};
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
 use crate::export;
-use crate::job::{BandBuilder, BandReport, Format, JobError, Output, SlicingChoice, Target, extrude};
+use crate::job::{
+    BandBuilder, BandReport, ExtrudeBridges, Format, JobError, Output, SlicingChoice, Target, extrude,
+};
 use crate::pieces::CostWeights;
 use crate::planar::{Tolerances, TolerancesError};
 use crate::reeb::{SlicingError, SlicingRule};
@@ -228,7 +230,12 @@ fn run_extrude(arguments: &ExtrudeArguments) -> Result<ExitCode, CliError> {
     refuse_json_beside(arguments.json, std::slice::from_ref(&output))?;
     let tolerances = Tolerances::new(arguments.chord, 0.0, 0.0)?;
     let progress = Progress::new(arguments.quiet);
-    let made = extrude(&arguments.file, arguments.thickness, &tolerances, &output, &mut |stage| {
+    let bridges = arguments.bridge.map(|width_mm| ExtrudeBridges {
+        width_mm,
+        components: arguments.components,
+        holes: arguments.holes,
+    });
+    let made = extrude(&arguments.file, arguments.thickness, &tolerances, bridges, &output, &mut |stage| {
         progress.show(stage)
     })?;
     drop(progress);

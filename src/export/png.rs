@@ -74,7 +74,9 @@ pub fn png_with_bridges(
     for (are_struts, colour) in [(true, STRUT), (false, SLIT)] {
         let mut path = PathBuilder::new();
         for bridge in bridges.iter().filter(|b| b.kind.is_strut() == are_struts) {
-            for outline in std::iter::once(&bridge.corners_mm[..]).chain(bridge.pockets_mm.iter().map(Vec::as_slice)) {
+            for outline in
+                std::iter::once(&bridge.corners_mm[..]).chain(bridge.pockets_mm.iter().map(Vec::as_slice))
+            {
                 add(&mut path, &mut outline.iter().map(|&p| DVec2::from(p)));
             }
         }

@@ -117,23 +117,23 @@ impl Band {
             && let Some(plan) =
                 clock.time(Stage::Solve, || bridging::relaxed_plan(&cut.catalogue, &plan_options))
         {
-            hint = bridging::hint(
-                options.goal,
-                topology_of(&cut.catalogue, &plan.sequence, plan_options.shape),
-            );
+            hint =
+                bridging::hint(options.goal, topology_of(&cut.catalogue, &plan.sequence, plan_options.shape));
             to_bridge = options.bridge_mm;
             planned = if to_bridge.is_some() { Ok(plan) } else { planned };
         }
         let plan = planned.map_err(|error| match error {
             PlanError::TooLarge { labels } => JobError::SearchTooLarge { labels },
-            PlanError::Refused { refusal, bin_mm } => JobError::Refused(
-                refusal::message(&cut.catalogue, &plan_options, &refusal, bin_mm) + &hint,
-            ),
+            PlanError::Refused { refusal, bin_mm } => {
+                JobError::Refused(refusal::message(&cut.catalogue, &plan_options, &refusal, bin_mm) + &hint)
+            }
         })?;
         let planned = topology_of(&cut.catalogue, &plan.sequence, plan_options.shape);
         let (mut part, outline) = make_part(job, &cut, &plan, &map, planned, &mut clock)?;
         let bridges = match to_bridge {
-            Some(width_mm) => Some(clock.time(Stage::Bridge, || lay_bridges(job, &mut part, &map, width_mm))?),
+            Some(width_mm) => {
+                Some(clock.time(Stage::Bridge, || lay_bridges(job, &mut part, &map, width_mm))?)
+            }
             None => None,
         };
         let mut report = describe(job, &cut, &plan, planned, &map, &outline, &part, curve_input, clock.times);

@@ -63,6 +63,9 @@ impl BridgesReport {
         };
         tell(self.struts, "strut", self.strut_length_mm, self.added_mm2, "add");
         tell(self.slits, "slit", self.slit_length_mm, self.removed_mm2, "take away");
+        if parts.is_empty() {
+            return format!("no bridges were needed: {with}");
+        }
         format!("{}: {with} instead of {}", parts.join(", "), self.without)
     }
 }
@@ -82,14 +85,18 @@ pub(super) fn can_help(error: &PlanError) -> bool {
 pub(super) fn relaxed_plan(catalogue: &Catalogue, options: &PlanOptions) -> Option<Plan> {
     let goal = options.goal;
     let mut tried = vec![goal];
-    [Goal { holes: None, ..goal }, Goal { components: None, ..goal }, Goal { components: None, holes: None, ..goal }]
-        .into_iter()
-        .filter(|&goal| {
-            let is_new = !tried.contains(&goal);
-            tried.push(goal);
-            is_new
-        })
-        .find_map(|goal| plan(catalogue, &PlanOptions { goal, ..*options }).ok())
+    [
+        Goal { holes: None, ..goal },
+        Goal { components: None, ..goal },
+        Goal { components: None, holes: None, ..goal },
+    ]
+    .into_iter()
+    .filter(|&goal| {
+        let is_new = !tried.contains(&goal);
+        tried.push(goal);
+        is_new
+    })
+    .find_map(|goal| plan(catalogue, &PlanOptions { goal, ..*options }).ok())
 }
 
 /// The counts that the goal asks of a part that has `has`.

@@ -38,7 +38,7 @@ pub use band::Band;
 pub use bridging::BridgesReport;
 pub use builder::{BandBuilder, BandJob, SlicingChoice};
 pub use error::{JobError, OutlineFault};
-pub use extrude::{ExtrudeReport, extrude};
+pub use extrude::{ExtrudeBridges, ExtrudeReport, extrude};
 pub use output::{Format, Output, Target};
 pub use plan::{Plan, PlanError, PlanOptions, plan};
 pub use report::{BandReport, InputReport, SeamReport, StageTime};

@@ -107,9 +107,9 @@ impl Ground {
         for (exterior, p) in exteriors {
             let at = grid.to_mm(p);
             // The smallest hole around a part is the one that it lies in.
-            let around = holes.iter().filter(|(rim, contour)| {
-                ground.rims[*rim].box_distance(at) == 0.0 && contour.contains(p)
-            });
+            let around = holes
+                .iter()
+                .filter(|(rim, contour)| ground.rims[*rim].box_distance(at) == 0.0 && contour.contains(p));
             let innermost = around.min_by_key(|(_, contour)| contour.doubled_area().abs());
             ground.rims[exterior].face = innermost.map_or(0, |&(rim, _)| ground.rims[rim].face);
         }

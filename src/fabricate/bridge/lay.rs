@@ -11,12 +11,14 @@ use crate::planar::{EdgeIndex, Grid, GridPoint, Region};
 const SPARE: f64 = 1.05;
 /// How hard a place is looked for. A link that finds none is tried again more generously after links a little
 /// longer had their turn.
-const TRIES: [Try; 4] = [
-    Try { detour: [0.3, 1.0], wider: 1.0, is_alone: true },
-    Try { detour: [2.0, 4.0], wider: 1.0, is_alone: false },
+const TRIES: [Try; 6] = [
+    Try { detour: [0.3, 1.0], wider: 1.0, is_alone: true, places: 10 },
+    Try { detour: [2.0, 4.0], wider: 1.0, is_alone: false, places: 40 },
     // Where many parts nearly touch, a wide bridge covers the pockets that a narrow one would cut off.
-    Try { detour: [0.3, 1.0], wider: 1.6, is_alone: false },
-    Try { detour: [0.3, 1.0], wider: 2.5, is_alone: false },
+    Try { detour: [0.3, 1.0], wider: 1.6, is_alone: false, places: 10 },
+    Try { detour: [0.3, 1.0], wider: 2.5, is_alone: false, places: 10 },
+    Try { detour: [2.0, 4.0], wider: 1.6, is_alone: false, places: 40 },
+    Try { detour: [2.0, 4.0], wider: 2.5, is_alone: false, places: 40 },
 ];
 
 struct Try {
@@ -26,6 +28,8 @@ struct Try {
     wider: f64,
     /// Whether it may join two only.
     is_alone: bool,
+    /// How many places are tried out, the best first.
+    places: usize,
 }
 /// What each grade of hold is worth, in widths of length, and what it is worth to do what the machine requires.
 const GRADE_WORTH: f64 = 0.5;
@@ -34,6 +38,8 @@ const REQUIRED_WORTH: f64 = 10.0;
 const FIRST_REACH: f64 = 4.0;
 /// The grade that a loop must have while there may be a better place elsewhere.
 const GOOD_GRADE: usize = 1;
+/// After so many places in a row that would not do, there is none: more would only take longer to say so.
+const MOST_FAILURES: usize = 400;
 /// Middles of bridges closer than this, in widths, would overlap.
 const BESIDE: f64 = 1.2;
 
@@ -124,12 +130,12 @@ impl Layer<'_> {
                 if self.is_done() || !sets.may_join(a, b) || !self.prober.is_clear(link.ends) {
                     continue;
                 }
-                let Try { detour: [part, widths], wider, is_alone } = TRIES[number];
+                let Try { detour: [part, widths], wider, is_alone, places } = TRIES[number];
                 let limit = (1.0 + part) * link.distance_mm + widths * self.prober.width_mm;
                 // Where more than two come close, a bridge may have no room to join two only.
                 let most = if is_alone { 1 } else { self.needed - self.done };
                 let prober = Prober { width_mm: wider * self.prober.width_mm, ..self.prober };
-                let places = prober.between(link.rims, limit);
+                let places = prober.between(link.rims, limit, places);
                 let is_laid = self.lay_best(&places, link.distance_mm, most, &mut sets);
                 if !is_laid && number + 1 < TRIES.len() {
                     again.push((link, number + 1));
@@ -142,19 +148,23 @@ impl Layer<'_> {
     /// Closes loops where they are shortest.
     fn close(&mut self) {
         let mut reach = FIRST_REACH * self.prober.width_mm;
+        let mut failures = 0;
         while !self.is_done() {
             let is_last = reach > self.extent_mm;
             let places = self.prober.loops(reach);
             for worst in [GOOD_GRADE, REQUIRED].into_iter().take(if is_last { 2 } else { 1 }) {
                 for place in &places {
-                    if self.is_done() {
+                    if self.is_done() || failures > MOST_FAILURES {
                         return;
                     }
                     if self.is_beside(place) {
                         continue;
                     }
-                    if let Some(verdict) = self.verdict(place, 0).filter(|v| v.grade <= worst) {
-                        self.lay(place, &verdict, place.length_mm());
+                    let verdict = self.verdict(place, 0).filter(|v| v.grade <= worst);
+                    if verdict.is_some_and(|verdict| self.lay(place, &verdict, place.length_mm())) {
+                        failures = 0;
+                    } else {
+                        failures += 1;
                     }
                 }
             }

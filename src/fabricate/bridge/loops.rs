@@ -74,9 +74,8 @@ impl<'a> Areas<'a> {
     /// The signed areas of the two polygons that the chord between two points on edges makes of the contour.
     fn cut(&self, a: (usize, DVec2), b: (usize, DVec2)) -> [f64; 2] {
         let origin = self.points[0];
-        let until = |(edge, p): (usize, DVec2)| {
-            self.before[edge] + (self.points[edge] - origin).perp_dot(p - origin)
-        };
+        let until =
+            |(edge, p): (usize, DVec2)| self.before[edge] + (self.points[edge] - origin).perp_dot(p - origin);
         let closing = (b.1 - origin).perp_dot(a.1 - origin);
         // Along the contour from a to b and back along the chord, wherever the contour begins.
         let mut first = until(b) - until(a) + closing;

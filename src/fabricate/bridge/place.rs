@@ -70,8 +70,8 @@ pub(super) struct Prober<'a> {
 }
 
 impl Prober<'_> {
-    /// The places where the contours `rims` are at most `limit_mm` apart, the best first.
-    pub(super) fn between(&self, rims: [usize; 2], limit_mm: f64) -> Vec<Place> {
+    /// The `most` best places where the contours `rims` are at most `limit_mm` apart, the best first.
+    pub(super) fn between(&self, rims: [usize; 2], limit_mm: f64, most: usize) -> Vec<Place> {
         let mut axes = Vec::new();
         for [a, b] in [rims, [rims[1], rims[0]]] {
             let (a, b) = (&self.ground.rims[a], &self.ground.rims[b]);
@@ -90,9 +90,10 @@ impl Prober<'_> {
         }
         let stride = axes.len().div_ceil(MOST_PLACES).max(1);
         // The shortest may not be thinned out.
-        let shortest = axes.iter().copied().min_by(|a, b| (a[0] - a[1]).length().total_cmp(&(b[0] - b[1]).length()));
+        let shortest =
+            axes.iter().copied().min_by(|a, b| (a[0] - a[1]).length().total_cmp(&(b[0] - b[1]).length()));
         let axes = axes.into_iter().step_by(stride).chain(shortest);
-        self.ranked(axes.filter_map(|[p, q]| self.probe(p, q)), MOST_TRIALS)
+        self.ranked(axes.filter_map(|[p, q]| self.probe(p, q)), most)
     }
 
     /// Whether no contour crosses the way between two points of contours.
@@ -187,7 +188,12 @@ impl Prober<'_> {
         }
         let (back, front) = (middle - ahead * reach[0], middle + ahead * reach[1]);
         let across = left * half_mm;
-        Some(Place { from: p, to: q, corners: [back - across, front - across, front + across, back + across], score })
+        Some(Place {
+            from: p,
+            to: q,
+            corners: [back - across, front - across, front + across, back + across],
+            score,
+        })
     }
 
     /// Where a ray enters what is to be joined, and where it leaves it again; `None` when it finds nothing.
@@ -224,9 +230,6 @@ impl Prober<'_> {
         (enter <= deepest).then_some(Hit { enter, leave })
     }
 }
-
-/// The most places that are tried out for one pair of contours.
-const MOST_TRIALS: usize = 10;
 
 /// Where a ray enters and leaves, in millimetres from its start.
 #[derive(Clone, Copy)]

@@ -45,13 +45,15 @@ fn left_over(a: &Region, b: &Region, bridges: &[Bridge]) -> f64 {
 
 /// A blob in its own cell of a checkerboard, often with a hole and an island in it.
 fn blob() -> impl Strategy<Value = Vec<Vec<DVec2>>> {
-    (3.0..6.5f64, 5..40usize, 0.0..6.0f64, 0..3usize, 0.6..1.0f64).prop_map(|(radius, n, turn, rings, flat)| {
-        let circle = |radius: f64| {
-            let at = |i: usize| DVec2::from_angle(turn + i as f64 * std::f64::consts::TAU / n as f64);
-            (0..n).map(|i| radius * at(i) * DVec2::new(1.0, flat)).collect::<Vec<_>>()
-        };
-        (0..=rings).map(|ring| circle(radius * (1.0 - 0.33 * ring as f64))).collect()
-    })
+    (3.0..6.5f64, 5..40usize, 0.0..6.0f64, 0..3usize, 0.6..1.0f64).prop_map(
+        |(radius, n, turn, rings, flat)| {
+            let circle = |radius: f64| {
+                let at = |i: usize| DVec2::from_angle(turn + i as f64 * std::f64::consts::TAU / n as f64);
+                (0..n).map(|i| radius * at(i) * DVec2::new(1.0, flat)).collect::<Vec<_>>()
+            };
+            (0..=rings).map(|ring| circle(radius * (1.0 - 0.33 * ring as f64))).collect()
+        },
+    )
 }
 
 fn islands() -> impl Strategy<Value = Region> {
@@ -176,7 +178,11 @@ fn a_strut_between_facing_sides_is_square_and_short() {
 
 #[test]
 fn an_island_in_a_hole_is_joined_and_the_hole_opened() {
-    let eye = region(&[rectangle(0.0, 0.0, 20.0, 20.0), rectangle(3.0, 3.0, 14.0, 14.0), rectangle(7.0, 8.0, 5.0, 5.0)]);
+    let eye = region(&[
+        rectangle(0.0, 0.0, 20.0, 20.0),
+        rectangle(3.0, 3.0, 14.0, 14.0),
+        rectangle(7.0, 8.0, 5.0, 5.0),
+    ]);
     assert_eq!(Counts::of(&eye), counts(2, 1));
     let open = bridge(&eye, counts(1, 0), &options(1.0)).unwrap();
     let kinds: Vec<BridgeKind> = open.bridges.iter().map(|b| b.kind).collect();
@@ -203,7 +209,9 @@ fn bays_are_closed_and_strands_are_cut_when_more_is_wanted() {
 #[test]
 fn a_ring_that_must_stay_closed_does() {
     let circle = |r: f64| -> Vec<DVec2> {
-        (0..90).map(|i| DVec2::splat(30.0) + r * DVec2::from_angle(f64::from(i) * 4f64.to_radians())).collect()
+        (0..90)
+            .map(|i| DVec2::splat(30.0) + r * DVec2::from_angle(f64::from(i) * 4f64.to_radians()))
+            .collect()
     };
     // The frame's hole is nearer to the inside of the ring than to anything else.
     let frame = region(&[rectangle(48.5, 28.0, 6.0, 4.0), rectangle(49.5, 29.0, 4.0, 2.0)]);

@@ -172,7 +172,8 @@ impl<'a> Site<'a> {
             rims.map(|rim| clipped(&rim.steps, least, greatest)).filter(|path| path.len() > 2).collect();
         if self.side == Side::Ink {
             paths.iter_mut().for_each(|path| path.reverse());
-            let corners = [(least.x, least.y), (greatest.x, least.y), (greatest.x, greatest.y), (least.x, greatest.y)];
+            let corners =
+                [(least.x, least.y), (greatest.x, least.y), (greatest.x, greatest.y), (least.x, greatest.y)];
             paths.push(corners.map(|(x, y)| GridPoint::new(x, y)).to_vec());
         }
         paths.extend(self.laid.iter().filter(|l| meets(l.low, l.high)).map(|l| l.path.clone()));
