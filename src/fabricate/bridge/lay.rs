@@ -3,7 +3,7 @@
 use super::ground::Ground;
 use super::links::{Link, links};
 use super::place::{Place, Prober};
-use super::trial::{REQUIRED, Site, Verdict};
+use super::trial::{Purpose, REQUIRED, Site, Verdict};
 use super::{Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts};
 use crate::planar::{EdgeIndex, Grid, GridPoint, Region};
 
@@ -133,10 +133,11 @@ impl Layer<'_> {
                 let Try { detour: [part, widths], wider, is_alone, places } = TRIES[number];
                 let limit = (1.0 + part) * link.distance_mm + widths * self.prober.width_mm;
                 // Where more than two come close, a bridge may have no room to join two only.
-                let most = if is_alone { 1 } else { self.needed - self.done };
+                let purpose =
+                    if is_alone { Purpose::Join } else { Purpose::JoinCrowd(self.needed - self.done) };
                 let prober = Prober { width_mm: wider * self.prober.width_mm, ..self.prober };
                 let places = prober.between(link.rims, limit, places);
-                let is_laid = self.lay_best(&places, link.distance_mm, most, &mut sets);
+                let is_laid = self.lay_best(&places, link.distance_mm, purpose, &mut sets);
                 if !is_laid && number + 1 < TRIES.len() {
                     again.push((link, number + 1));
                 }
@@ -160,7 +161,7 @@ impl Layer<'_> {
                     if self.is_beside(place) {
                         continue;
                     }
-                    let verdict = self.verdict(place, 0).filter(|v| v.grade <= worst);
+                    let verdict = self.verdict(place, Purpose::Loop).filter(|v| v.grade <= worst);
                     if verdict.is_some_and(|verdict| self.lay(place, &verdict, place.length_mm())) {
                         failures = 0;
                     } else {
@@ -187,8 +188,8 @@ impl Layer<'_> {
         })
     }
 
-    /// Lays the bridge that joins at most `most` at the best of these places; `false` when none will do.
-    fn lay_best(&mut self, places: &[Place], least_mm: f64, most: usize, sets: &mut Sets) -> bool {
+    /// Lays a bridge at the best of these places; `false` when none will do.
+    fn lay_best(&mut self, places: &[Place], least_mm: f64, purpose: Purpose, sets: &mut Sets) -> bool {
         let mut passed: Vec<(f64, &Place, Verdict)> = Vec::new();
         let mut least = f64::INFINITY;
         for place in places {
@@ -196,7 +197,7 @@ impl Layer<'_> {
             if place.score >= least {
                 break;
             }
-            let verdict = self.verdict(place, most);
+            let verdict = self.verdict(place, purpose);
             if let Some(verdict) = verdict.filter(|v| sets.can_join_all(&self.touched(place), v.changes)) {
                 let fails = if verdict.grade > REQUIRED { REQUIRED_WORTH } else { 0.0 };
                 let worth = GRADE_WORTH * verdict.grade as f64 + fails;
@@ -224,8 +225,8 @@ impl Layer<'_> {
         nodes
     }
 
-    fn verdict(&self, place: &Place, joins: usize) -> Option<Verdict> {
-        self.site.try_out(&place.corners, joins)
+    fn verdict(&self, place: &Place, purpose: Purpose) -> Option<Verdict> {
+        self.site.try_out(&place.corners, purpose)
     }
 
     /// Lays a bridge; `false` when the whole was counted and the bridge taken up again.

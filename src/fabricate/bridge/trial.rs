@@ -30,6 +30,23 @@ const LARGEST_POCKET: f64 = 1.5;
 /// Arcs of eroded corners, as part of the radius.
 const ARC: f64 = 0.03;
 
+/// What a bridge is to do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Purpose {
+    /// Make one loop.
+    Loop,
+    /// Join two.
+    Join,
+    /// Join two, or more if there is no room for less, up to so many changes of the count; and fill small pockets.
+    JoinCrowd(usize),
+}
+
+impl Purpose {
+    fn most(self) -> usize {
+        if let Self::JoinCrowd(most) = self { most } else { 1 }
+    }
+}
+
 /// How a bridge passed.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Verdict {
@@ -108,9 +125,8 @@ impl<'a> Site<'a> {
         Region::fill(self.ground.grid, &ink.chain(laid).collect::<Vec<_>>(), FillRule::Positive)
     }
 
-    /// Tries a bridge that may join one with up to `joins` others, or make one loop when that is 0; `None` when it
-    /// does not do so.
-    pub(super) fn try_out(&self, corners: &[DVec2; 4], joins: usize) -> Option<Verdict> {
+    /// Tries a bridge; `None` when it does not serve its purpose.
+    pub(super) fn try_out(&self, corners: &[DVec2; 4], purpose: Purpose) -> Option<Verdict> {
         let bridge = self.on_grid(corners);
         let largest = self.width_mm.max(2.0 * self.erosion_mm).max(2.0 * self.dilation_mm);
         let mut paths = self.window(bridge.low - WINDOW * largest, bridge.high + WINDOW * largest);
@@ -119,20 +135,20 @@ impl<'a> Site<'a> {
         let mut with = Region::fill(self.ground.grid, &paths, FillRule::Positive);
         let mut change = Change::between(&without, &with);
         let mut pockets = Vec::new();
-        if joins > 1 && change.holes > 0 {
+        if matches!(purpose, Purpose::JoinCrowd(_)) && change.holes > 0 {
             pockets = self.pockets(&without, &with, change.holes as usize)?;
             paths.extend(pockets.iter().cloned());
             with = Region::fill(self.ground.grid, &paths, FillRule::Positive);
             change = Change::between(&without, &with);
         }
-        let changes = (1..=joins.max(1)).find(|&changes| change.is_bridge(joins, changes))?;
+        let changes = (1..=purpose.most()).find(|&changes| change.serves(purpose, changes))?;
         let area_mm2 = with.area_mm2() - without.area_mm2();
         let withstands = |[erosion_mm, dilation_mm]: [f64; 2]| {
             let eroded = |r: f64| Change::between(&offset(&without, -r), &offset(&with, -r));
-            if erosion_mm > 0.0 && !eroded(erosion_mm).is_bridge(joins, changes) {
+            if erosion_mm > 0.0 && !eroded(erosion_mm).serves(purpose, changes) {
                 return false;
             }
-            dilation_mm == 0.0 || eroded(-dilation_mm).adds_nothing(joins, changes)
+            dilation_mm == 0.0 || eroded(-dilation_mm).adds_nothing(purpose, changes)
         };
         let graded = GRADES.into_iter().chain([0.0]).map(|part| {
             [self.erosion_mm, self.dilation_mm].map(|mm| mm.max(part * self.width_mm).max(self.least_mm))
@@ -201,17 +217,17 @@ impl Change {
         }
     }
 
-    /// Whether it joins so many, or makes a loop when it may join none: whether the two ends of a loop hang
-    /// together is not always to be seen in the window.
-    fn is_bridge(self, joins: usize, changes: usize) -> bool {
+    /// Whether so many are joined, or a loop is made: whether the two ends of a loop hang together is not always to
+    /// be seen in the window.
+    fn serves(self, purpose: Purpose, changes: usize) -> bool {
         let found = (self.components, self.holes);
-        found == (-(changes as isize), 0) || (joins == 0 && found == (0, 1))
+        found == (-(changes as isize), 0) || (purpose == Purpose::Loop && found == (0, 1))
     }
 
     /// Whether no more is joined, and no slot beside the bridge becomes a hole. Dilated far enough, both sides of a
     /// short bridge meet without it.
-    fn adds_nothing(self, joins: usize, changes: usize) -> bool {
-        let loops = if joins == 0 { 1 } else { 0 };
+    fn adds_nothing(self, purpose: Purpose, changes: usize) -> bool {
+        let loops = if purpose == Purpose::Loop { 1 } else { 0 };
         (-(changes as isize)..=0).contains(&self.components) && self.holes <= loops
     }
 }
