@@ -36,6 +36,7 @@ pub(super) enum Command {
 const BAND_HELP: &str = "\
 Lengths take mm, cm, in, pt or px (96 to the inch); a bare number is millimetres.
 Positions in messages are millimetres from the lower left corner of the page, y up.
+In a PNG, struts of --bridge are orange and slits are green.
 
 Examples:
   A bracelet in one piece that closes on itself:
@@ -45,6 +46,8 @@ Examples:
     openwork band scroll.svg --along line:240mm --components 1 -o border.svg -o border.png
   Along a path drawn elsewhere, for a nozzle of 0.4 mm:
     openwork band lace.svg --along path:collar.svg#edge --min-feature 0.4mm -o collar.stl
+  A stencil from an ornament of many parts: one piece, nothing that falls out:
+    openwork band foliage.svg --along line:240mm --components 1 --holes 0 --bridge 1mm -o stencil.svg
 
 Exit codes: 0 done; 2 the input or an argument is wrong; 3 the constraints cannot be met;
 4 the result failed verification and nothing was written; 1 a bug of ours.";
@@ -61,10 +64,12 @@ Examples:
 const EXTRUDE_HELP: &str = "\
 Lengths take mm, cm, in, pt or px (96 to the inch); a bare number is millimetres.
 
-Example:
+Examples:
   openwork extrude sign.svg --thickness 3mm -o sign.stl
+  A stencil in one piece from which nothing falls out:
+    openwork extrude letters.svg --bridge 1mm --components 1 --holes 0 -o stencil.stl
 
-Exit codes: 0 done; 2 the drawing or an argument is wrong; 4 the solid failed verification and nothing
+Exit codes: 0 done; 2 the drawing or an argument is wrong; 3 there is no place for a bridge; 4 the solid failed verification and nothing
 was written; 1 a bug of ours.";
 
 const VERIFY_HELP: &str = "\
@@ -127,6 +132,10 @@ pub(super) struct BandArguments {
     /// Thickness of the solid
     #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "2mm", allow_hyphen_values = true)]
     pub(super) thickness: f64,
+    /// Where the ornament cannot give the components or holes asked for, join components by struts and open holes
+    /// by slits of this width, as few and as short as can be [default: refuse]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    pub(super) bridge: Option<f64>,
     /// Round corners of the path to this radius [default: a corner is an error]
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(super) round: Option<f64>,
@@ -189,6 +198,15 @@ pub(super) struct ExtrudeArguments {
     /// Thickness of the solid
     #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "2mm", allow_hyphen_values = true)]
     pub(super) thickness: f64,
+    /// Lay bridges of this width so that the drawing has the components and holes asked for: struts join, slits open
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    pub(super) bridge: Option<f64>,
+    /// Components that bridges are to make [default: as drawn]
+    #[arg(long, value_name = "N", requires = "bridge", allow_negative_numbers = true)]
+    pub(super) components: Option<usize>,
+    /// Holes that bridges are to make [default: as drawn]
+    #[arg(long, value_name = "N", requires = "bridge", allow_negative_numbers = true)]
+    pub(super) holes: Option<usize>,
     /// Greatest distance between a curve and its chords
     #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "0.01mm", allow_hyphen_values = true)]
     pub(super) chord: f64,

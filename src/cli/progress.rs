@@ -32,6 +32,7 @@ impl Progress {
             Stage::Solve => "searching for a sequence",
             Stage::Fit => "fitting the pieces",
             Stage::Map => "mapping along the curve",
+            Stage::Bridge => "laying bridges",
             Stage::Svg => "drawing",
             Stage::Stl => "building the solid",
             Stage::Png => "painting the picture",

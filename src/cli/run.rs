@@ -14,7 +14,8 @@ use crate::analysis::{Analysis, AnalysisError};
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
 use crate::export;
 use crate::job::{
-    BandBuilder, BandReport, Format, JobError, Output, READ_SHARE, SlicingChoice, Target, extrude,
+    BandBuilder, BandReport, ExtrudeBridges, Format, JobError, Output, READ_SHARE, SlicingChoice, Target,
+    extrude,
 };
 use crate::pieces::CostWeights;
 use crate::planar::{Tolerances, TolerancesError};
@@ -146,6 +147,9 @@ fn builder(a: &BandArguments) -> BandBuilder {
     if let Some(radius) = a.round {
         builder = builder.round_mm(radius);
     }
+    if let Some(width) = a.bridge {
+        builder = builder.bridge_mm(width);
+    }
     builder
 }
 
@@ -241,7 +245,12 @@ fn run_extrude(arguments: &ExtrudeArguments) -> Result<ExitCode, CliError> {
     refuse_json_beside(arguments.json, std::slice::from_ref(&output))?;
     let tolerances = Tolerances::new(arguments.chord, 0.0, 0.0)?;
     let progress = Progress::new(arguments.quiet);
-    let made = extrude(&arguments.file, arguments.thickness, &tolerances, &output, &mut |stage| {
+    let bridges = arguments.bridge.map(|width_mm| ExtrudeBridges {
+        width_mm,
+        components: arguments.components,
+        holes: arguments.holes,
+    });
+    let made = extrude(&arguments.file, arguments.thickness, &tolerances, bridges, &output, &mut |stage| {
         progress.show(stage)
     })?;
     drop(progress);

@@ -17,7 +17,7 @@ mod staged;
 mod stl;
 mod svg;
 
-pub use png::{DEFAULT_PIXELS, png};
+pub use png::{DEFAULT_PIXELS, png, png_with_bridges};
 pub use staged::{Staged, check_destination, persist_all, remove_staged, stage};
 pub use stl::stl;
 pub use svg::{SvgDocument, SvgOptions, svg};

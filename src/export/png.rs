@@ -1,8 +1,10 @@
 //! A picture of a region for a person to look at.
 
+use glam::DVec2;
 use resvg::tiny_skia::{Color, FillRule, Paint, PathBuilder, Pixmap, Transform};
 
 use super::ExportError;
+use crate::fabricate::Bridge;
 use crate::planar::Region;
 
 /// The longer side in pixels when nothing else is asked for.
@@ -13,12 +15,27 @@ const PIXELS: std::ops::RangeInclusive<u32> = 16..=16_384;
 const MARGIN: f64 = 0.04;
 const PAPER: [u8; 3] = [0xf7, 0xf4, 0xee];
 const INK: [u8; 3] = [0x22, 0x30, 0x4f];
+/// Ink that a strut adds, and where a slit took ink away.
+const STRUT: [u8; 3] = [0xe4, 0x6a, 0x24];
+const SLIT: [u8; 3] = [0x2c, 0xa8, 0x8d];
 
 /// `region` as a PNG of `longer_side` pixels (with margins), dark ink on light paper.
 ///
 /// # Errors
 /// [`ExportError::Option`] for a size that no picture can have, [`ExportError::Empty`] without ink.
 pub fn png(region: &Region, longer_side: u32) -> Result<Vec<u8>, ExportError> {
+    png_with_bridges(region, &[], longer_side)
+}
+
+/// The same with the region's bridges: struts are orange, slits are green.
+///
+/// # Errors
+/// As [`png`].
+pub fn png_with_bridges(
+    region: &Region,
+    bridges: &[Bridge],
+    longer_side: u32,
+) -> Result<Vec<u8>, ExportError> {
     if !PIXELS.contains(&longer_side) {
         return Err(ExportError::Option {
             name: "picture size",
@@ -34,20 +51,39 @@ pub fn png(region: &Region, longer_side: u32) -> Result<Vec<u8>, ExportError> {
     let mut picture = Pixmap::new(width, height).ok_or(ExportError::Picture)?;
     picture.fill(Color::from_rgba8(PAPER[0], PAPER[1], PAPER[2], 255));
 
-    let mut path = PathBuilder::new();
-    for contour in region.contours() {
-        for (i, &p) in contour.points().iter().enumerate() {
-            let p = region.grid().to_mm(p);
+    let add = |path: &mut PathBuilder, points: &mut dyn Iterator<Item = DVec2>| {
+        for (i, p) in points.enumerate() {
             let x = ((p.x - low.x + margin) * scale) as f32;
             let y = ((high.y - p.y + margin) * scale) as f32;
             if i == 0 { path.move_to(x, y) } else { path.line_to(x, y) }
         }
         path.close();
+    };
+    let mut fill = |path: PathBuilder, rule: FillRule, [r, g, b]: [u8; 3]| {
+        let path = path.finish().ok_or(ExportError::Picture)?;
+        let mut paint = Paint::default();
+        paint.set_color_rgba8(r, g, b, 255);
+        picture.fill_path(&path, &paint, rule, Transform::identity(), None);
+        Ok::<_, ExportError>(())
+    };
+    let mut ink = PathBuilder::new();
+    for contour in region.contours() {
+        add(&mut ink, &mut contour.points().iter().map(|&p| region.grid().to_mm(p)));
     }
-    let path = path.finish().ok_or(ExportError::Picture)?;
-    let mut paint = Paint::default();
-    paint.set_color_rgba8(INK[0], INK[1], INK[2], 255);
-    picture.fill_path(&path, &paint, FillRule::EvenOdd, Transform::identity(), None);
+    fill(ink, FillRule::EvenOdd, INK)?;
+    for (are_struts, colour) in [(true, STRUT), (false, SLIT)] {
+        let mut path = PathBuilder::new();
+        for bridge in bridges.iter().filter(|b| b.kind.is_strut() == are_struts) {
+            for outline in
+                std::iter::once(&bridge.corners_mm[..]).chain(bridge.pockets_mm.iter().map(Vec::as_slice))
+            {
+                add(&mut path, &mut outline.iter().map(|&p| DVec2::from(p)));
+            }
+        }
+        if !path.is_empty() {
+            fill(path, FillRule::Winding, colour)?;
+        }
+    }
     picture.encode_png().map_err(|_| ExportError::Picture)
 }
 

@@ -6,12 +6,16 @@
 //! vertices. The solid is therefore closed by construction and writing it changes nothing: a region of b0
 //! components and b1 holes becomes b0 shells of total genus b1.
 //!
+//! Before that, bridges may give the region other counts ([`bridge()`]).
+//!
 //! Excluded: files, curved fronts, kerf. Nothing here knows how the region came to be.
 
+mod bridge;
 mod caps;
 mod snap;
 mod solid;
 
+pub use bridge::{Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts, bridge};
 pub use snap::snapped_to_f32;
 pub use solid::{Solid, extrude};
 

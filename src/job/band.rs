@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::bridging::{self, BridgesReport};
 use super::builder::{BandJob, SlicingChoice};
 use super::certificate::{Certificate, FileDigest, sha256};
 use super::error::JobError;
@@ -17,7 +18,7 @@ use super::stage::{Clock, Stage};
 use crate::domain::{BandMap, CurveSpec, PlanarCurve};
 use crate::exemplar::{Exemplar, Limits, ReadOptions, read_path};
 use crate::export::{self, SvgDocument, SvgOptions};
-use crate::fabricate;
+use crate::fabricate::{self, Counts};
 use crate::fit::{FitOptions, Outline, Prepared, StitchMethod};
 use crate::pieces::{Catalogue, CostWeights};
 use crate::planar::Region;
@@ -45,6 +46,8 @@ pub struct Band {
     part: Part,
     plan: Plan,
     planned: Topology,
+    /// What the part has, with bridges.
+    counts: Counts,
     report: BandReport,
 }
 
@@ -110,16 +113,43 @@ impl Band {
             // Nothing is refused for a join that was not in the table.
             planned = clock.time(Stage::Solve, || plan(&cut.catalogue, &plan_options));
         }
+        let mut to_bridge = None;
+        let mut hint = String::new();
+        if let Err(error) = &planned
+            && bridging::can_help(error)
+            && (options.bridge_mm.is_some() || matches!(error, PlanError::Refused { .. }))
+            && let Some(plan) =
+                clock.time(Stage::Solve, || bridging::relaxed_plan(&cut.catalogue, &plan_options))
+        {
+            hint =
+                bridging::hint(options.goal, topology_of(&cut.catalogue, &plan.sequence, plan_options.shape));
+            to_bridge = options.bridge_mm;
+            planned = if to_bridge.is_some() { Ok(plan) } else { planned };
+        }
         let plan = planned.map_err(|error| match error {
             PlanError::TooLarge { labels } => JobError::SearchTooLarge { labels },
             PlanError::Refused { refusal, bin_mm } => {
-                JobError::Refused(refusal::message(&cut.catalogue, &plan_options, &refusal, bin_mm))
+                JobError::Refused(refusal::message(&cut.catalogue, &plan_options, &refusal, bin_mm) + &hint)
             }
         })?;
         let planned = topology_of(&cut.catalogue, &plan.sequence, plan_options.shape);
-        let (part, outline) = make_part(job, &cut, &plan, &map, planned, &mut clock)?;
-        let report = describe(job, &cut, &plan, planned, &map, &outline, &part, curve_input, clock.times);
-        Ok(Self { job: job.clone(), part, plan, planned, report })
+        let (mut part, outline) = make_part(job, &cut, &plan, &map, planned, &mut clock)?;
+        let bridges = match to_bridge {
+            Some(width_mm) => {
+                Some(clock.time(Stage::Bridge, || lay_bridges(job, &mut part, &map, width_mm))?)
+            }
+            None => None,
+        };
+        let mut report = describe(job, &cut, &plan, planned, &map, &outline, &part, curve_input, clock.times);
+        let counts = Counts::of(&part.region);
+        if let Some(bridges) = &bridges {
+            report.notes.push(bridges.note(counts));
+            let inside = bridging::inside(&map).map(|p| p + part.shift_mm);
+            report.closed_pattern = inside.is_some_and(|p| bridging::surrounds(&part.region, p));
+            report.certificate.add_bridges(&bridges.bridges, counts, report.closed_pattern);
+        }
+        report.bridges = bridges;
+        Ok(Self { job: job.clone(), part, plan, planned, counts, report })
     }
 
     /// The part in millimetres, y up from the lower left corner of its page.
@@ -132,7 +162,7 @@ impl Band {
         &self.plan
     }
 
-    /// What the plan's pieces add up to.
+    /// What the plan's pieces add up to, without bridges.
     pub fn topology(&self) -> Topology {
         self.planned
     }
@@ -152,8 +182,8 @@ impl Band {
         let mut clock = Clock::new(progress);
         let mut report = self.report.clone();
         let expected = Expected {
-            components: Some(self.planned.components as usize),
-            holes: Some(self.planned.holes as usize),
+            components: Some(self.counts.components),
+            holes: Some(self.counts.holes),
             min_feature_mm: self.job.tolerances.min_feature_mm(),
             min_gap_mm: self.job.tolerances.min_gap_mm(),
         };
@@ -194,8 +224,10 @@ impl Band {
                     item
                 }
                 Format::Png => {
-                    let picture =
-                        clock.time(Stage::Png, || export::png(&self.part.region, export::DEFAULT_PIXELS))?;
+                    let bridges = self.report.bridges.as_ref().map_or(&[][..], |b| &b.bridges);
+                    let picture = clock.time(Stage::Png, || {
+                        export::png_with_bridges(&self.part.region, bridges, export::DEFAULT_PIXELS)
+                    })?;
                     digest(output, &picture);
                     Pending::new(output.target(), picture)?
                 }
@@ -402,6 +434,22 @@ fn dropped_note(slicing: &Slicing) -> Option<String> {
     })
 }
 
+/// Gives the part bridges of at least `width_mm` so that it meets the goal.
+fn lay_bridges(
+    job: &BandJob,
+    part: &mut Part,
+    map: &BandMap,
+    width_mm: f64,
+) -> Result<BridgesReport, JobError> {
+    let goal = job.options.goal;
+    let inside = bridging::inside(map).map(|p| p + part.shift_mm).filter(|_| goal.closed_pattern);
+    let options = bridging::options(width_mm, &job.tolerances, inside);
+    let bridged = bridging::bridged(&part.region, goal, &options)?;
+    let without = Counts::of(&part.region);
+    part.region = fabricate::snapped_to_f32(&bridged.region)?;
+    Ok(BridgesReport::new(without, bridged.bridges))
+}
+
 #[expect(
     clippy::too_many_arguments,
     reason = "a report draws on every stage, and this is the only place that sees all"
@@ -522,6 +570,7 @@ fn describe(
         length_error_mm: length_mm / outline.stretch - length_mm,
         squash: outline.squash,
         squeezes: map.squeezes().to_vec(),
+        bridges: None,
         seams: SeamReport {
             count: outline.seams.len(),
             jumps: outline.seams.iter().filter(|s| !s.is_natural).count(),

@@ -42,6 +42,7 @@ pub struct BandBuilder {
     pub(super) thickness_mm: f64,
     pub(super) round_mm: Option<f64>,
     pub(super) stitch: StitchMethod,
+    pub(super) bridge_mm: Option<f64>,
     chord_mm: f64,
     min_feature_mm: f64,
     min_gap_mm: f64,
@@ -67,6 +68,7 @@ impl BandBuilder {
             thickness_mm: DEFAULT_THICKNESS_MM,
             round_mm: None,
             stitch: StitchMethod::default(),
+            bridge_mm: None,
             chord_mm: Tolerances::DEFAULT_CHORD_MM,
             min_feature_mm: 0.0,
             min_gap_mm: 0.0,
@@ -176,6 +178,14 @@ impl BandBuilder {
         self
     }
 
+    /// The width of bridges: where the ornament cannot give the components or holes that are asked for, struts of
+    /// this width join components and slits of this width open holes. Without it there are none, and such a job
+    /// is refused.
+    pub fn bridge_mm(mut self, width_mm: f64) -> Self {
+        self.bridge_mm = Some(width_mm);
+        self
+    }
+
     /// Checks every option by its name.
     ///
     /// # Errors
@@ -185,6 +195,9 @@ impl BandBuilder {
         let tolerances = Tolerances::new(self.chord_mm, self.min_feature_mm, self.min_gap_mm)?;
         if let Some(width) = self.width_mm {
             in_range("--width", width, 0.5, 10_000.0)?;
+        }
+        if let Some(width) = self.bridge_mm {
+            in_range("--bridge", width, 0.01, 100.0)?;
         }
         in_range("--thickness", self.thickness_mm, 0.001, 10_000.0)?;
         if !(0.0..=1e6).contains(&self.beta) {

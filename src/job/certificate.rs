@@ -13,6 +13,7 @@ use rustc_hash::FxHashMap;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
+use crate::fabricate::{Bridge, BridgeKind, Counts};
 use crate::pieces::Catalogue;
 use crate::topology::{Descriptor, Goal, Shape, Topology, Wanted};
 
@@ -147,6 +148,28 @@ pub struct FileDigest {
 }
 
 impl Certificate {
+    /// Adds what bridges change, and the counts with them.
+    pub(super) fn add_bridges(&mut self, bridges: &[Bridge], counts: Counts, closed_pattern: bool) {
+        for bridge in bridges {
+            let (kind, components, holes) = match bridge.kind {
+                BridgeKind::Join => ("strut", -1, 0),
+                BridgeKind::Enclose => ("strut", 0, 1),
+                BridgeKind::Open => ("slit", 0, -1),
+                BridgeKind::Split => ("slit", 1, 0),
+            };
+            let middle = |axis: usize| (bridge.from_mm[axis] + bridge.to_mm[axis]) / 2.0;
+            let position_um = [0, 1].map(|axis| (middle(axis) * 1e3).round() as i64);
+            let step = BridgeStep { kind, components, holes, position_um };
+            self.bridges.extend(std::iter::repeat_n(step, bridge.changes));
+        }
+        self.result = ResultCounts {
+            components: counts.components as u32,
+            holes: counts.holes as u32,
+            euler: counts.components as i64 - counts.holes as i64,
+            closed_pattern,
+        };
+    }
+
     /// The certificate of a sequence whose pieces add up to `planned`, before its files exist.
     pub(super) fn new(
         catalogue: &Catalogue,

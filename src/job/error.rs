@@ -8,7 +8,7 @@ use thiserror::Error;
 use crate::domain::DomainError;
 use crate::exemplar::ExemplarError;
 use crate::export::ExportError;
-use crate::fabricate::FabricateError;
+use crate::fabricate::{BridgeError, FabricateError};
 use crate::fit::FitError;
 use crate::pieces::CostWeightsError;
 use crate::planar::TolerancesError;
@@ -69,6 +69,9 @@ pub enum JobError {
         /// What is there instead.
         fault: OutlineFault,
     },
+    /// Bridges cannot be laid.
+    #[error("--bridge: {0}. Nothing was written")]
+    Bridge(#[from] BridgeError),
     /// The solid cannot be made.
     #[error(transparent)]
     Fabricate(#[from] FabricateError),
@@ -127,7 +130,8 @@ impl JobError {
             | Self::Export(_) => 2,
             Self::Slicing(SlicingError::TooThin { .. }) => 3,
             Self::Slicing(_) => 2,
-            Self::Refused(_) | Self::SearchTooLarge { .. } => 3,
+            Self::Bridge(BridgeError::Width { .. }) => 2,
+            Self::Refused(_) | Self::SearchTooLarge { .. } | Self::Bridge(_) => 3,
             Self::Fabricate(FabricateError::Thickness { .. }) => 2,
             Self::Outline { .. } | Self::Fabricate(_) | Self::Unjudged { .. } | Self::Mismatch { .. } => 4,
             Self::Fit(_) => 1,

@@ -4,14 +4,15 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use super::bridging::{self, BridgesReport};
 use super::error::JobError;
 use super::output::{Output, Pending, Target, persist};
 use super::report::{InputReport, StageTime};
 use super::stage::{Clock, Stage};
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
 use crate::export;
-use crate::fabricate;
-use crate::planar::Tolerances;
+use crate::fabricate::{self, Counts};
+use crate::planar::{Region, Tolerances};
 use crate::verify::{self, Expected, StlReport};
 
 /// What was extruded, and what was found in the file.
@@ -27,6 +28,8 @@ pub struct ExtrudeReport {
     pub holes: usize,
     /// The height of the solid in millimetres.
     pub thickness_mm: f64,
+    /// The bridges, when some were asked for; the counts are with them.
+    pub bridges: Option<BridgesReport>,
     /// What was found in the file.
     pub solid: StlReport,
     /// What the user may want to know.
@@ -35,7 +38,19 @@ pub struct ExtrudeReport {
     pub times: Vec<StageTime>,
 }
 
-/// Extrudes the drawing in `file` to a solid `thickness_mm` high and writes it as STL, verified.
+/// Bridges for a drawing that is extruded, and the counts that they are to make.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExtrudeBridges {
+    /// The width of struts and slits in millimetres.
+    pub width_mm: f64,
+    /// The number of components; `None` leaves it as it is.
+    pub components: Option<usize>,
+    /// The number of holes; `None` leaves it as it is.
+    pub holes: Option<usize>,
+}
+
+/// Extrudes the drawing in `file` to a solid `thickness_mm` high and writes it as STL, verified; with `bridges`,
+/// these are laid before.
 ///
 /// # Errors
 /// [`JobError`] for a drawing that cannot be represented, a thickness out of range, and a file that cannot be
@@ -44,6 +59,7 @@ pub fn extrude(
     file: &Path,
     thickness_mm: f64,
     tolerances: &Tolerances,
+    bridges: Option<ExtrudeBridges>,
     output: &Output,
     progress: &mut dyn FnMut(Stage),
 ) -> Result<ExtrudeReport, JobError> {
@@ -52,9 +68,15 @@ pub fn extrude(
     let options =
         ReadOptions { chord_mm: tolerances.chord_mm(), target_height_mm: None, limits: Limits::default() };
     let drawing = clock.time(Stage::Read, || Exemplar::read(file, &options))?;
-    let region = drawing.region();
+    let mut region = drawing.region().clone();
+    let mut notes = drawing.notes().to_vec();
+    let bridges = match bridges {
+        Some(wanted) => Some(clock.time(Stage::Bridge, || lay(&mut region, wanted, tolerances))?),
+        None => None,
+    };
+    notes.extend(bridges.as_ref().map(|report| report.note(Counts::of(&region))));
     let bytes = clock.time(Stage::Stl, || {
-        let solid = fabricate::extrude(region, thickness_mm)?;
+        let solid = fabricate::extrude(&region, thickness_mm)?;
         Ok::<_, JobError>(export::stl(&solid, &format!("Openwork {}", env!("CARGO_PKG_VERSION")))?)
     })?;
     let pending = Pending::new(output.target(), bytes)?;
@@ -72,9 +94,26 @@ pub fn extrude(
         holes: region.holes(),
         thickness_mm,
         solid,
-        notes: drawing.notes().to_vec(),
+        bridges,
+        notes,
         times: clock.times,
     })
+}
+
+/// Gives a drawing bridges.
+fn lay(
+    region: &mut Region,
+    wanted: ExtrudeBridges,
+    tolerances: &Tolerances,
+) -> Result<BridgesReport, JobError> {
+    let without = Counts::of(region);
+    let counts = Counts {
+        components: wanted.components.unwrap_or(without.components),
+        holes: wanted.holes.unwrap_or(without.holes),
+    };
+    let bridged = fabricate::bridge(region, counts, &bridging::options(wanted.width_mm, tolerances, None))?;
+    *region = bridged.region;
+    Ok(BridgesReport::new(without, bridged.bridges))
 }
 
 /// Reads a written STL again and holds it against the plan.

@@ -23,6 +23,7 @@
 //! ```
 
 mod band;
+mod bridging;
 mod builder;
 mod certificate;
 mod choice;
@@ -38,6 +39,7 @@ mod stage;
 
 pub use crate::reeb::KeptRange;
 pub use band::{Band, READ_SHARE};
+pub use bridging::BridgesReport;
 pub use builder::{BandBuilder, BandJob, SlicingChoice};
 pub use certificate::{
     BridgeStep, Certificate, Closing, Connections, FileDigest, PieceDescriptor, ResultCounts, Steps,
@@ -45,7 +47,7 @@ pub use certificate::{
 };
 pub use choice::{Choice, Chosen, DEFAULT_TEMPERATURE, choose};
 pub use error::{JobError, OutlineFault};
-pub use extrude::{ExtrudeReport, extrude};
+pub use extrude::{ExtrudeBridges, ExtrudeReport, extrude};
 pub use output::{Format, Output, Target};
 pub use plan::{DEFAULT_MEMORY_LIMIT, Plan, PlanError, PlanOptions, plan};
 pub use report::{

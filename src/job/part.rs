@@ -19,6 +19,8 @@ pub(super) struct Part {
     pub(super) region: Region,
     /// Width and height of the page.
     pub(super) page_mm: DVec2,
+    /// What was added to positions of the curve to lay the part on its page.
+    pub(super) shift_mm: DVec2,
 }
 
 /// Why an outline is no part.
@@ -63,6 +65,6 @@ impl Part {
         if (components, holes) != (planned.components as usize, planned.holes as usize) {
             return Err(PartError::Untrue(OutlineFault::Counts { components, holes }));
         }
-        Ok(Self { region, page_mm })
+        Ok(Self { region, page_mm, shift_mm: shift })
     }
 }

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::bridging::BridgesReport;
 use super::certificate::Certificate;
 use super::json;
 use crate::domain::Squeeze;
@@ -136,6 +137,9 @@ pub struct BandReport {
     pub squash: f64,
     /// Where the curve bends so hard that the inner side is squeezed.
     pub squeezes: Vec<Squeeze>,
+    /// The bridges, when the ornament alone could not give what was asked for; then `components`, `holes` and
+    /// the files are with them.
+    pub bridges: Option<BridgesReport>,
     /// The seams.
     pub seams: SeamReport,
     /// How the pieces were bent to meet at the seams.

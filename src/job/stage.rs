@@ -17,6 +17,8 @@ pub enum Stage {
     Fit,
     /// The map along the curve.
     Map,
+    /// Struts and slits, when they are needed.
+    Bridge,
     /// The SVG file.
     Svg,
     /// The solid and the STL file.
@@ -29,12 +31,13 @@ pub enum Stage {
 
 impl Stage {
     /// All stages.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Read,
         Self::Slice,
         Self::Solve,
         Self::Fit,
         Self::Map,
+        Self::Bridge,
         Self::Svg,
         Self::Stl,
         Self::Png,
@@ -49,6 +52,7 @@ impl Stage {
             Self::Solve => "solve",
             Self::Fit => "fit",
             Self::Map => "map",
+            Self::Bridge => "bridge",
             Self::Svg => "svg",
             Self::Stl => "stl",
             Self::Png => "png",

@@ -1,0 +1,295 @@
+//! Laying bridges of one kind: the shortest first, each where it is best.
+
+use super::ground::Ground;
+use super::links::{Link, links};
+use super::place::{Place, Prober};
+use super::trial::{Purpose, REQUIRED, Site, Verdict};
+use super::{Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts};
+use crate::planar::{EdgeIndex, Grid, GridPoint, Region};
+
+/// A machine's narrowest width is exceeded by this: what is just as wide is lost in rounding.
+const SPARE: f64 = 1.05;
+/// How hard a place is looked for. A link that finds none is tried again more generously after links a little
+/// longer had their turn.
+const TRIES: [Try; 6] = [
+    Try { detour: [0.3, 1.0], wider: 1.0, is_alone: true, places: 10 },
+    Try { detour: [2.0, 4.0], wider: 1.0, is_alone: false, places: 40 },
+    // Where many parts nearly touch, a wide bridge covers the pockets that a narrow one would cut off.
+    Try { detour: [0.3, 1.0], wider: 1.6, is_alone: false, places: 10 },
+    Try { detour: [0.3, 1.0], wider: 2.5, is_alone: false, places: 10 },
+    Try { detour: [2.0, 4.0], wider: 1.6, is_alone: false, places: 40 },
+    Try { detour: [2.0, 4.0], wider: 2.5, is_alone: false, places: 40 },
+];
+
+struct Try {
+    /// A place may be so much farther than the nearest, in parts of its distance and in widths, if it is better.
+    detour: [f64; 2],
+    /// The width of the bridge, in parts of what was asked for.
+    wider: f64,
+    /// Whether it may join two only.
+    is_alone: bool,
+    /// How many places are tried out, the best first.
+    places: usize,
+}
+/// What each grade of hold is worth, in widths of length, and what it is worth to do what the machine requires.
+const GRADE_WORTH: f64 = 0.5;
+const REQUIRED_WORTH: f64 = 10.0;
+/// Loops are looked for within so many widths first, and then within twice as many, and so on.
+const FIRST_REACH: f64 = 4.0;
+/// The grade that a loop must have while there may be a better place elsewhere.
+const GOOD_GRADE: usize = 1;
+/// After so many places in a row that would not do, there is none: more would only take longer to say so.
+const MOST_FAILURES: usize = 400;
+/// Middles of bridges closer than this, in widths, would overlap.
+const BESIDE: f64 = 1.2;
+
+/// `region` with `needed` bridges of one kind.
+pub(super) fn lay(
+    region: &Region,
+    kind: BridgeKind,
+    needed: usize,
+    options: &BridgeOptions,
+) -> Result<Bridged, BridgeError> {
+    let side = kind.side();
+    let ground = Ground::new(region);
+    let index = EdgeIndex::new(region);
+    let machine_mm = if kind.is_strut() { options.min_feature_mm } else { options.min_gap_mm };
+    let width_mm = options.width_mm.max(SPARE * machine_mm);
+    let prober = Prober { ground: &ground, index: &index, side, width_mm };
+    let (low, high) = region.bounds_mm().unwrap_or_default();
+    // Windows have the counts of the whole but for the rounding of their borders. Should that ever make a
+    // difference, the whole is counted after each bridge.
+    for careful in [false, true] {
+        let site = Site::new(&ground, side, width_mm, options);
+        let has = Counts::of(region);
+        let mut layer = Layer {
+            prober,
+            site,
+            kind,
+            needed,
+            has,
+            careful,
+            extent_mm: low.distance(high),
+            done: 0,
+            bridges: Vec::new(),
+        };
+        if kind == BridgeKind::Join || kind == BridgeKind::Open {
+            let apart = options.closed_around.filter(|_| kind == BridgeKind::Open);
+            layer.join(apart.map(|p| [0, ground.face_of(region, nearest_step(region.grid(), p))]));
+        } else {
+            layer.close();
+        }
+        if !layer.is_done() {
+            return Err(BridgeError::NoPlace { kind, done: layer.done, needed, width_mm });
+        }
+        let built = layer.site.built();
+        if Counts::of(&built) == kind.changed(has, needed) {
+            return Ok(Bridged { region: built, bridges: layer.bridges });
+        }
+    }
+    Err(BridgeError::NoPlace { kind, done: 0, needed, width_mm })
+}
+
+fn nearest_step(grid: Grid, p: glam::DVec2) -> GridPoint {
+    GridPoint::new(grid.steps(p.x), grid.steps(p.y))
+}
+
+/// Bridges of one kind while they are laid.
+struct Layer<'a> {
+    prober: Prober<'a>,
+    site: Site<'a>,
+    kind: BridgeKind,
+    needed: usize,
+    has: Counts,
+    /// Whether the whole is counted after each bridge.
+    careful: bool,
+    extent_mm: f64,
+    /// By how many the count has been changed.
+    done: usize,
+    bridges: Vec<Bridge>,
+}
+
+impl Layer<'_> {
+    fn is_done(&self) -> bool {
+        self.done == self.needed
+    }
+
+    /// Joins the nearest nodes first (Kruskal's minimum spanning forest), but never the two of `apart`.
+    fn join(&mut self, apart: Option<[usize; 2]>) {
+        let (ground, side) = (self.prober.ground, self.prober.side);
+        let mut sets = Sets::new(ground.nodes(side), apart);
+        let (mut over, mut reach) = (-1.0, self.prober.width_mm);
+        // Links without a place for a bridge: when longer ones are taken, they too may take a longer way.
+        let mut again: Vec<(Link, usize)> = Vec::new();
+        while !self.is_done() && (over <= self.extent_mm || !again.is_empty()) {
+            let fresh = links(ground, side, over, reach, |a, b| sets.may_join(a, b));
+            let fresh = fresh.into_iter().map(|link| (link, 0));
+            for (link, number) in std::mem::take(&mut again).into_iter().chain(fresh) {
+                let [a, b] = link.rims.map(|rim| ground.node(rim, side));
+                // What lies between two contours is nearer to both: it has been tried already, and had no place.
+                if self.is_done() || !sets.may_join(a, b) || !self.prober.is_clear(link.ends) {
+                    continue;
+                }
+                let Try { detour: [part, widths], wider, is_alone, places } = TRIES[number];
+                let limit = (1.0 + part) * link.distance_mm + widths * self.prober.width_mm;
+                // Where more than two come close, a bridge may have no room to join two only.
+                let purpose =
+                    if is_alone { Purpose::Join } else { Purpose::JoinCrowd(self.needed - self.done) };
+                let prober = Prober { width_mm: wider * self.prober.width_mm, ..self.prober };
+                let places = prober.between(link.rims, limit, places);
+                let is_laid = self.lay_best(&places, link.distance_mm, purpose, &mut sets);
+                if !is_laid && number + 1 < TRIES.len() {
+                    again.push((link, number + 1));
+                }
+            }
+            (over, reach) = (reach, 2.0 * reach);
+        }
+    }
+
+    /// Closes loops where they are shortest.
+    fn close(&mut self) {
+        let mut reach = FIRST_REACH * self.prober.width_mm;
+        let mut failures = 0;
+        while !self.is_done() {
+            let is_last = reach > self.extent_mm;
+            let places = self.prober.loops(reach);
+            for worst in [GOOD_GRADE, REQUIRED].into_iter().take(if is_last { 2 } else { 1 }) {
+                for place in &places {
+                    if self.is_done() || failures > MOST_FAILURES {
+                        return;
+                    }
+                    if self.is_beside(place) {
+                        continue;
+                    }
+                    let verdict = self.verdict(place, Purpose::Loop).filter(|v| v.grade <= worst);
+                    if verdict.is_some_and(|verdict| self.lay(place, &verdict, place.length_mm())) {
+                        failures = 0;
+                    } else {
+                        failures += 1;
+                    }
+                }
+            }
+            if is_last {
+                return;
+            }
+            reach *= 2.0;
+        }
+    }
+
+    fn in_mm(&self, path: &[GridPoint]) -> Vec<[f64; 2]> {
+        path.iter().map(|&p| self.prober.ground.grid.to_mm(p).to_array()).collect()
+    }
+
+    fn is_beside(&self, place: &Place) -> bool {
+        let near = BESIDE * self.prober.width_mm;
+        self.bridges.iter().any(|laid| {
+            let [from, to] = [laid.from_mm, laid.to_mm].map(glam::DVec2::from);
+            (0.5 * (from + to)).distance(place.middle()) < near
+        })
+    }
+
+    /// Lays a bridge at the best of these places; `false` when none will do.
+    fn lay_best(&mut self, places: &[Place], least_mm: f64, purpose: Purpose, sets: &mut Sets) -> bool {
+        let mut passed: Vec<(f64, &Place, Verdict)> = Vec::new();
+        let mut least = f64::INFINITY;
+        for place in places {
+            // The places come in the order of their scores.
+            if place.score >= least {
+                break;
+            }
+            let verdict = self.verdict(place, purpose);
+            if let Some(verdict) = verdict.filter(|v| sets.can_join_all(&self.touched(place), v.changes)) {
+                let fails = if verdict.grade > REQUIRED { REQUIRED_WORTH } else { 0.0 };
+                let worth = GRADE_WORTH * verdict.grade as f64 + fails;
+                let cost = place.score + worth * self.prober.width_mm;
+                least = least.min(cost);
+                passed.push((cost, place, verdict));
+            }
+        }
+        passed.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let laid = passed.into_iter().find(|(_, place, verdict)| self.lay(place, verdict, least_mm));
+        if let Some((_, place, _)) = laid {
+            let touched = self.touched(place);
+            touched.windows(2).for_each(|pair| sets.join(pair[0], pair[1]));
+        }
+        laid.is_some()
+    }
+
+    /// What a bridge at this place meets, each once.
+    fn touched(&self, place: &Place) -> Vec<usize> {
+        let (ground, side) = (self.prober.ground, self.prober.side);
+        let mut nodes: Vec<usize> =
+            self.prober.met(&place.corners).into_iter().map(|rim| ground.node(rim, side)).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+
+    fn verdict(&self, place: &Place, purpose: Purpose) -> Option<Verdict> {
+        self.site.try_out(&place.corners, purpose)
+    }
+
+    /// Lays a bridge; `false` when the whole was counted and the bridge taken up again.
+    fn lay(&mut self, place: &Place, verdict: &Verdict, least_mm: f64) -> bool {
+        self.site.lay(&place.corners, &verdict.pockets);
+        let wanted = self.kind.changed(self.has, self.done + verdict.changes);
+        if self.careful && Counts::of(&self.site.built()) != wanted {
+            self.site.take_up(verdict.pockets.len());
+            return false;
+        }
+        self.done += verdict.changes;
+        self.bridges.push(Bridge {
+            kind: self.kind,
+            changes: verdict.changes,
+            from_mm: place.from.to_array(),
+            to_mm: place.to.to_array(),
+            width_mm: place.width_mm(),
+            length_mm: place.length_mm(),
+            least_mm,
+            area_mm2: verdict.area_mm2,
+            corners_mm: place.corners.map(|p| p.to_array()),
+            pockets_mm: verdict.pockets.iter().map(|path| self.in_mm(path)).collect(),
+        });
+        true
+    }
+}
+
+/// What is joined already, and what must not be.
+struct Sets {
+    parent: Vec<usize>,
+    apart: Option<[usize; 2]>,
+}
+
+impl Sets {
+    fn new(count: usize, apart: Option<[usize; 2]>) -> Self {
+        Self { parent: (0..count).collect(), apart }
+    }
+
+    fn root(&mut self, mut node: usize) -> usize {
+        while self.parent[node] != node {
+            self.parent[node] = self.parent[self.parent[node]];
+            node = self.parent[node];
+        }
+        node
+    }
+
+    fn may_join(&mut self, a: usize, b: usize) -> bool {
+        let (a, b) = (self.root(a), self.root(b));
+        let kept = self.apart.map(|[x, y]| [self.root(x), self.root(y)]);
+        a != b && kept != Some([a, b]) && kept != Some([b, a])
+    }
+
+    /// Whether these are `changes` more than one that are not joined yet, and may be.
+    fn can_join_all(&mut self, nodes: &[usize], changes: usize) -> bool {
+        let mut roots: Vec<usize> = nodes.iter().map(|&node| self.root(node)).collect();
+        roots.sort_unstable();
+        roots.dedup();
+        let kept = self.apart.map(|pair| pair.map(|node| self.root(node)));
+        roots.len() == changes + 1 && !kept.is_some_and(|pair| pair.iter().all(|node| roots.contains(node)))
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.parent[a] = b;
+    }
+}
