@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 
 use super::values;
-use crate::domain::CurveSpec;
+use crate::domain::{CurveSpec, RectSize};
 use crate::job::SlicingChoice;
 
 /// Ornament that can be made: new pattern from one SVG ornament, with exactly the components and holes you ask
@@ -22,6 +22,9 @@ pub(super) enum Command {
     /// Synthesize a band along a line, a circle or any path, and write it as SVG, STL or PNG
     #[command(after_help = BAND_HELP)]
     Band(Box<BandArguments>),
+    /// Synthesize a rectangle, in both directions, and write it as SVG, STL or PNG
+    #[command(after_help = RECT_HELP)]
+    Rect(Box<RectArguments>),
     /// Show how an exemplar is understood: critical points, cuts, pieces, portals, descriptors
     #[command(after_help = ANALYZE_HELP)]
     Analyze(AnalyzeArguments),
@@ -45,6 +48,20 @@ Examples:
     openwork band scroll.svg --along line:240mm --components 1 -o border.svg -o border.png
   Along a path drawn elsewhere, for a nozzle of 0.4 mm:
     openwork band lace.svg --along path:collar.svg#edge --min-feature 0.4mm -o collar.stl
+
+Exit codes: 0 done; 2 the input or an argument is wrong; 3 the constraints cannot be met;
+4 the result failed verification and nothing was written; 1 a bug of ours.";
+
+const RECT_HELP: &str = "\
+Lengths take mm, cm, in, pt or px (96 to the inch); a bare number is millimetres.
+The pattern is made along the width, turned by 90 degrees and used as the exemplar along the height. What is
+asked for holds for the finished rectangle, which the ink fills from side to side.
+
+Examples:
+  A panel in one piece:
+    openwork rect vine.svg --size 120x80mm --components 1 -o panel.svg -o panel.stl
+  With smaller rows, and a report of what was tried:
+    openwork rect scroll.svg --size 120x80mm --width 8mm -o panel.svg --report panel.json
 
 Exit codes: 0 done; 2 the input or an argument is wrong; 3 the constraints cannot be met;
 4 the result failed verification and nothing was written; 1 a bug of ours.";
@@ -85,7 +102,32 @@ pub(super) struct BandArguments {
     /// The curve: line:120mm, circle:65mm (diameter), path:FILE.svg or path:FILE.svg#id
     #[arg(long, value_name = "SPEC", value_parser = values::curve)]
     pub(super) along: CurveSpec,
-    /// Height of the band; the exemplar is scaled to it [default: the exemplar's own height]
+    /// The pattern must go all the way round a closed curve
+    #[arg(long)]
+    pub(super) closed_pattern: bool,
+    /// Round corners of the path to this radius [default: a corner is an error]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    pub(super) round: Option<f64>,
+    #[command(flatten)]
+    pub(super) pattern: PatternArguments,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct RectArguments {
+    /// The ornament to learn from (SVG)
+    pub(super) exemplar: PathBuf,
+    /// Width and height, such as 120x80mm
+    #[arg(long, value_name = "WxH", value_parser = values::size, allow_hyphen_values = true)]
+    pub(super) size: RectSize,
+    #[command(flatten)]
+    pub(super) pattern: PatternArguments,
+}
+
+/// What a band and a rectangle share.
+#[derive(Debug, Args)]
+pub(super) struct PatternArguments {
+    /// Height that the exemplar is scaled to: of the band, or of a rectangle's rows [default: the exemplar's own
+    /// height, in a rectangle at most a quarter of it]
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(super) width: Option<f64>,
     /// Exactly so many connected components [default: free]
@@ -94,9 +136,6 @@ pub(super) struct BandArguments {
     /// Exactly so many holes; the inside of a closed ring is one [default: free]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(super) holes: Option<u32>,
-    /// The pattern must go all the way round a closed curve
-    #[arg(long)]
-    pub(super) closed_pattern: bool,
     /// Where the exemplar is cut: reeb, reeb:LENGTH or uniform:T
     #[arg(long, value_name = "RULE", value_parser = values::slicing, default_value = "reeb")]
     pub(super) slicing: SlicingChoice,
@@ -115,9 +154,6 @@ pub(super) struct BandArguments {
     /// Thickness of the solid
     #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "2mm", allow_hyphen_values = true)]
     pub(super) thickness: f64,
-    /// Round corners of the path to this radius [default: a corner is an error]
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
-    pub(super) round: Option<f64>,
     #[command(flatten)]
     pub(super) tolerances: ToleranceArguments,
     /// A file to write: .svg, .stl or .png; may be repeated; - is SVG on standard output

@@ -6,10 +6,11 @@ use std::process::ExitCode;
 use thiserror::Error;
 
 use super::args::{
-    AnalyzeArguments, Arguments, BandArguments, Command, ExtrudeArguments, ToleranceArguments,
-    VerifyArguments,
+    AnalyzeArguments, Arguments, BandArguments, Command, ExtrudeArguments, PatternArguments,
+    ToleranceArguments, VerifyArguments,
 };
 use super::progress::Progress;
+use super::rect;
 use crate::analysis::{Analysis, AnalysisError};
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
 use crate::export;
@@ -17,7 +18,7 @@ use crate::job::{BandBuilder, BandReport, Format, JobError, Output, SlicingChoic
 use crate::pieces::CostWeights;
 use crate::planar::{Tolerances, TolerancesError};
 use crate::reeb::{SlicingError, SlicingRule};
-use crate::verify::{self, Expected, Mismatch, VerifyError};
+use crate::verify::{self, Expected, Mismatch, Narrowest, VerifyError};
 
 /// Whatever ends the program with a message.
 #[derive(Debug, Error)]
@@ -59,6 +60,7 @@ impl CliError {
 pub(super) fn run(arguments: Arguments) -> Result<ExitCode, CliError> {
     match arguments.command {
         Command::Band(band) => run_band(&band),
+        Command::Rect(arguments) => rect::run_rect(&arguments),
         Command::Analyze(analyze) => run_analyze(&analyze),
         Command::Extrude(extrude) => run_extrude(&extrude),
         Command::Verify(verify) => run_verify(&verify),
@@ -87,27 +89,44 @@ fn refuse_json_beside(json: bool, outputs: &[Output]) -> Result<(), JobError> {
 }
 
 fn run_band(arguments: &BandArguments) -> Result<ExitCode, CliError> {
+    let (outputs, report_target) = destinations(&arguments.pattern)?;
+    let quiet = arguments.pattern.quiet;
+    let job = builder(arguments).build()?;
+    job.check_outputs(&outputs, report_target.as_ref())?;
+    let progress = Progress::new(quiet);
+    let band = job.run(&mut |stage| progress.show(stage))?;
+    let report = band.write(&outputs, report_target.as_ref(), &mut |stage| progress.show(stage))?;
+    drop(progress);
+    if !quiet {
+        say_band(&report);
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Where a pattern goes, and its report.
+pub(super) fn destinations(arguments: &PatternArguments) -> Result<(Vec<Output>, Option<Target>), JobError> {
     let outputs: Vec<Output> =
         arguments.output.iter().map(|path| output(path, Format::Svg)).collect::<Result<_, _>>()?;
     let report_target = arguments
         .report
         .as_ref()
         .map(|path| if path.as_os_str() == "-" { Target::Stdout } else { Target::File(path.clone()) });
-    let job = builder(arguments).build()?;
-    job.check_outputs(&outputs, report_target.as_ref())?;
-    let progress = Progress::new(arguments.quiet);
-    let band = job.run(&mut |stage| progress.show(stage))?;
-    let report = band.write(&outputs, report_target.as_ref(), &mut |stage| progress.show(stage))?;
-    drop(progress);
-    if !arguments.quiet {
-        say_band(&report);
-    }
-    Ok(ExitCode::SUCCESS)
+    Ok((outputs, report_target))
 }
 
-fn builder(a: &BandArguments) -> BandBuilder {
-    let mut builder = BandBuilder::new(&a.exemplar, a.along.clone())
-        .closed_pattern(a.closed_pattern)
+fn builder(arguments: &BandArguments) -> BandBuilder {
+    let builder = BandBuilder::new(&arguments.exemplar, arguments.along.clone())
+        .closed_pattern(arguments.closed_pattern);
+    let builder = match arguments.round {
+        Some(radius) => builder.round_mm(radius),
+        None => builder,
+    };
+    with_pattern(builder, &arguments.pattern)
+}
+
+/// The options that a band and a rectangle share.
+pub(super) fn with_pattern(builder: BandBuilder, a: &PatternArguments) -> BandBuilder {
+    let mut builder = builder
         .slicing(a.slicing)
         .variety(a.variety)
         .alpha(a.alpha)
@@ -128,9 +147,6 @@ fn builder(a: &BandArguments) -> BandBuilder {
     if let Some(seed) = a.seed {
         builder = builder.seed(seed);
     }
-    if let Some(radius) = a.round {
-        builder = builder.round_mm(radius);
-    }
     builder
 }
 
@@ -144,15 +160,25 @@ fn say_band(report: &BandReport) {
         report.length_mm,
         report.seams.jumps
     );
-    let widths = [("ink", report.min_feature), ("gap", report.min_gap)];
+    say_found(report.min_feature, report.min_gap, &report.notes, &report.files);
+}
+
+/// What was measured, noted and written.
+pub(super) fn say_found(
+    min_feature: Option<Narrowest>,
+    min_gap: Option<Narrowest>,
+    notes: &[String],
+    files: &[String],
+) {
+    let widths = [("ink", min_feature), ("gap", min_gap)];
     for (what, narrowest) in widths.iter().filter_map(|(what, n)| n.map(|n| (what, n))) {
         let p = narrowest.position_mm;
         say!("narrowest {what} {:.3} mm, at ({:.1}, {:.1}) mm", narrowest.width_mm, p.x, p.y);
     }
-    for note in &report.notes {
+    for note in notes {
         say!("note: {note}");
     }
-    for file in &report.files {
+    for file in files {
         say!("wrote {file}");
     }
 }

@@ -1,6 +1,6 @@
 //! Values of options as they are typed.
 
-use crate::domain::{CurveSpec, parse_length_mm};
+use crate::domain::{CurveSpec, RectSize, parse_length_mm};
 use crate::job::SlicingChoice;
 
 /// A length in millimetres: `12mm`, `1.2cm`, `0.5in`, `34pt`, `45px` or `12`.
@@ -11,6 +11,11 @@ pub(super) fn length(text: &str) -> Result<f64, String> {
 /// A curve: `line:120mm`, `circle:65mm`, `path:FILE.svg#id`.
 pub(super) fn curve(text: &str) -> Result<CurveSpec, String> {
     text.parse::<CurveSpec>().map_err(|e| e.to_string())
+}
+
+/// A size: `120x80mm`.
+pub(super) fn size(text: &str) -> Result<RectSize, String> {
+    text.parse::<RectSize>().map_err(|e| e.to_string())
 }
 
 /// `reeb`, `reeb:0.2mm` or `uniform:12`.

@@ -15,5 +15,5 @@ mod warp;
 
 pub use interpolant::Monotone;
 pub use offsets::offsets;
-pub use outline::{FitError, FitOptions, Outline, OutlineContour, Seam};
+pub use outline::{FitError, FitOptions, Outline, OutlineContour, Seam, Sides};
 pub use warp::{SideTarget, Stitch, StripWarp};

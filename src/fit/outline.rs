@@ -21,6 +21,16 @@ pub struct FitOptions {
     pub chord_mm: f64,
 }
 
+/// What becomes of the two sides of the band, v = −H/2 and v = H/2.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Sides {
+    /// Ink stays within them: a run that offsets carry out of the band is pressed flat.
+    #[default]
+    Free,
+    /// Ink fills the band from side to side: the run is pressed or stretched.
+    Filled,
+}
+
 /// A closed contour in band coordinates, with the ink on its left.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OutlineContour {
@@ -52,7 +62,7 @@ pub struct Outline {
     pub seams: Vec<Seam>,
     /// What the lengths of the pieces were multiplied by.
     pub stretch: f64,
-    /// What heights were multiplied by, so that the run fits the band; at most 1.
+    /// What heights were multiplied by, so that the run fits the band; at most 1 unless it is to fill the band.
     pub squash: f64,
 }
 
@@ -78,12 +88,25 @@ impl Outline {
     /// # Errors
     /// [`FitError`] when the sequence is no run of the catalogue.
     pub fn new(catalogue: &Catalogue, sequence: &[usize], options: &FitOptions) -> Result<Self, FitError> {
+        Self::with_sides(catalogue, sequence, options, Sides::Free)
+    }
+
+    /// The outline of `sequence` with a say in what becomes of the sides of the band.
+    ///
+    /// # Errors
+    /// As [`Outline::new`].
+    pub fn with_sides(
+        catalogue: &Catalogue,
+        sequence: &[usize],
+        options: &FitOptions,
+        sides: Sides,
+    ) -> Result<Self, FitError> {
         let placed = Placed::new(catalogue, sequence, options)?;
         let bent: Vec<Bent> = (0..sequence.len()).map(|i| placed.bend(i, options.chord_mm)).collect();
         let contours = placed.link(&bent, options);
         let seams = placed.seams(&bent);
         let mut outline = Self { contours, seams, stretch: placed.stretch, squash: 1.0 };
-        outline.fit_height(options.height_mm);
+        outline.fit_height(options.height_mm, sides);
         Ok(outline)
     }
 
@@ -95,13 +118,15 @@ impl Outline {
 
     /// Offsets may carry ink out of the band: the whole is then moved back to the middle, and pressed flat as
     /// far as need be.
-    fn fit_height(&mut self, height_mm: f64) {
+    fn fit_height(&mut self, height_mm: f64, sides: Sides) {
         let (low, high) = self.height_range_mm();
         let half = height_mm / 2.0;
-        if low >= -half && high <= half {
-            return;
-        }
-        self.squash = (height_mm / (high - low)).min(1.0);
+        let fits = height_mm / (high - low);
+        self.squash = match sides {
+            Sides::Free if low >= -half && high <= half => return,
+            Sides::Free => fits.min(1.0),
+            Sides::Filled => fits,
+        };
         let middle = (low + high) / 2.0;
         for point in self.contours.iter_mut().flat_map(|c| &mut c.points) {
             point.y = (point.y - middle) * self.squash;

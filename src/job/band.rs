@@ -18,9 +18,9 @@ use crate::domain::{BandMap, CurveSpec, PlanarCurve};
 use crate::exemplar::{Exemplar, Limits, ReadOptions, read_path};
 use crate::export::{self, SvgDocument, SvgOptions};
 use crate::fabricate;
-use crate::fit::{FitOptions, Outline};
+use crate::fit::{FitOptions, Outline, Sides};
 use crate::pieces::{Catalogue, CostWeights};
-use crate::planar::Region;
+use crate::planar::{Grid, Region};
 use crate::reeb::{ReebGraph, Slicing, SlicingRule};
 use crate::solver::autocorrelation;
 use crate::topology::{Shape, Topology};
@@ -39,26 +39,33 @@ const CHORD_TRIES: [f64; 4] = [1.0, 0.25, 0.06, 0.015];
 /// A band that has the planned topology, ready to be written.
 #[derive(Debug, Clone)]
 pub struct Band {
-    job: BandJob,
-    part: Part,
-    plan: Plan,
-    planned: Topology,
-    report: BandReport,
+    pub(super) job: BandJob,
+    pub(super) part: Part,
+    pub(super) plan: Plan,
+    pub(super) planned: Topology,
+    pub(super) report: BandReport,
 }
 
 /// An exemplar cut into pieces.
-struct Cut {
+pub(super) struct Cut {
     exemplar: Exemplar,
     region: Region,
-    slicing: Slicing,
-    catalogue: Catalogue,
-    weights: CostWeights,
-    height_mm: f64,
+    pub(super) slicing: Slicing,
+    pub(super) catalogue: Catalogue,
+    pub(super) weights: CostWeights,
+    pub(super) height_mm: f64,
+    /// What becomes of the sides of the band.
+    pub(super) sides: Sides,
     /// Parts and holes that are too small to be told from nothing at the chord error.
     specks: Vec<DVec2>,
 }
 
 impl Cut {
+    /// The grid that the cuts are on.
+    pub(super) fn grid(&self) -> Grid {
+        self.region.grid()
+    }
+
     /// Weighs every join instead of the cheapest few; `false` if that changes nothing.
     fn admit_all_successors(&mut self) -> bool {
         let pieces = self.catalogue.pieces().len();
@@ -90,31 +97,23 @@ impl Band {
         let half = cut.height_mm / 2.0;
         // Where the band cannot lie is found before the search, not after it.
         let map = clock.time(Stage::Map, || BandMap::new(curve, -half, half))?;
-        let length_mm = map.curve().length_mm();
-        let is_ring = map.curve().is_closed();
-        let plan_options = PlanOptions {
-            shape: if is_ring { Shape::Ring } else { Shape::Open },
-            length_mm,
-            height_mm: cut.height_mm,
-            goal: options.goal,
-            weights: options.weights,
-            seed: options.seed,
-            variety: job.variety,
-        };
-        let mut planned = clock.time(Stage::Solve, || plan(&cut.catalogue, &plan_options));
-        if matches!(planned, Err(PlanError::Refused { .. })) && cut.admit_all_successors() {
-            // Nothing is refused for a join that was not in the table.
-            planned = clock.time(Stage::Solve, || plan(&cut.catalogue, &plan_options));
-        }
-        let plan = planned.map_err(|error| match error {
-            PlanError::TooLarge { labels } => JobError::SearchTooLarge { labels },
-            PlanError::Refused { refusal, bin_mm } => {
-                JobError::Refused(refusal::message(&cut.catalogue, &plan_options, &refusal, bin_mm))
-            }
-        })?;
-        let planned = topology_of(&cut.catalogue, &plan.sequence, plan_options.shape);
-        let (part, outline) = make_part(job, &cut, &plan, &map, planned, &mut clock)?;
-        let report = describe(job, &cut, &plan, planned, &map, &outline, &part, curve_input, clock.times);
+        let (plan, planned) = plan_run(job, &mut cut, &map, &mut clock)?;
+        Self::made(job, &cut, plan, planned, &map, curve_input, &mut clock)
+    }
+
+    /// The band that follows a plan.
+    pub(super) fn made(
+        job: &BandJob,
+        cut: &Cut,
+        plan: Plan,
+        planned: Topology,
+        map: &BandMap,
+        curve_input: Option<InputReport>,
+        clock: &mut Clock<'_>,
+    ) -> Result<Self, JobError> {
+        let (part, outline) = make_part(job, cut, &plan, map, planned, clock)?;
+        let report =
+            describe(job, cut, &plan, planned, map, &outline, &part, curve_input, clock.times.clone());
         Ok(Self { job: job.clone(), part, plan, planned, report })
     }
 
@@ -145,6 +144,20 @@ impl Band {
         progress: &mut dyn FnMut(Stage),
     ) -> Result<BandReport, JobError> {
         self.job.check_outputs(outputs, report_file)?;
+        let (report, mut pending) = self.deliver(outputs, progress)?;
+        if let Some(target) = report_file {
+            pending.push(Pending::new(target, report.to_json().into_bytes())?);
+        }
+        persist(pending)?;
+        Ok(report)
+    }
+
+    /// Every output, encoded, read again and counted, on its way to its name; and the report.
+    pub(super) fn deliver(
+        &self,
+        outputs: &[Output],
+        progress: &mut dyn FnMut(Stage),
+    ) -> Result<(BandReport, Vec<Pending>), JobError> {
         let mut clock = Clock::new(progress);
         let mut report = self.report.clone();
         let expected = Expected {
@@ -202,11 +215,7 @@ impl Band {
         report.min_gap = found.min_gap;
         report.files = outputs.iter().map(|o| name(o.target()).display().to_string()).collect();
         report.times.extend(clock.times);
-        if let Some(target) = report_file {
-            pending.push(Pending::new(target, report.to_json().into_bytes())?);
-        }
-        persist(pending)?;
-        Ok(report)
+        Ok((report, pending))
     }
 
     /// The part as an SVG drawing.
@@ -259,7 +268,7 @@ impl Band {
     }
 }
 
-fn read_exemplar(job: &BandJob) -> Result<Exemplar, JobError> {
+pub(super) fn read_exemplar(job: &BandJob) -> Result<Exemplar, JobError> {
     let options = ReadOptions {
         chord_mm: job.tolerances.chord_mm() * READ_SHARE,
         target_height_mm: job.options.width_mm,
@@ -292,8 +301,14 @@ fn sha256_of(file: &Path) -> String {
 }
 
 fn slice(job: &BandJob, exemplar: Exemplar) -> Result<Cut, JobError> {
+    let region = exemplar.region().clone();
+    slice_region(job, exemplar, &region)
+}
+
+/// Cuts `region`, which is the ink of `exemplar` or was made from it.
+pub(super) fn slice_region(job: &BandJob, exemplar: Exemplar, region: &Region) -> Result<Cut, JobError> {
     let speck_mm2 = job.tolerances.chord_mm().powi(2);
-    let (region, specks) = exemplar.region().without_specks(speck_mm2);
+    let (region, specks) = region.without_specks(speck_mm2);
     let region = &region;
     if region.is_empty() {
         return Err(JobError::Option {
@@ -312,7 +327,39 @@ fn slice(job: &BandJob, exemplar: Exemplar) -> Result<Cut, JobError> {
     let weights = job.options.weights;
     let catalogue = Catalogue::new(region, &slicing.cuts, &weights);
     let (region, height_mm) = (region.clone(), high.y - low.y);
-    Ok(Cut { region, slicing, catalogue, weights, height_mm, exemplar, specks })
+    Ok(Cut { region, slicing, catalogue, weights, height_mm, sides: Sides::Free, exemplar, specks })
+}
+
+/// The best sequence for `job` along the curve of `map`, and what it adds up to.
+pub(super) fn plan_run(
+    job: &BandJob,
+    cut: &mut Cut,
+    map: &BandMap,
+    clock: &mut Clock<'_>,
+) -> Result<(Plan, Topology), JobError> {
+    let options = &job.options;
+    let plan_options = PlanOptions {
+        shape: if map.curve().is_closed() { Shape::Ring } else { Shape::Open },
+        length_mm: map.curve().length_mm(),
+        height_mm: cut.height_mm,
+        goal: options.goal,
+        weights: options.weights,
+        seed: options.seed,
+        variety: job.variety,
+    };
+    let mut planned = clock.time(Stage::Solve, || plan(&cut.catalogue, &plan_options));
+    if matches!(planned, Err(PlanError::Refused { .. })) && cut.admit_all_successors() {
+        // Nothing is refused for a join that was not in the table.
+        planned = clock.time(Stage::Solve, || plan(&cut.catalogue, &plan_options));
+    }
+    let plan = planned.map_err(|error| match error {
+        PlanError::TooLarge { labels } => JobError::SearchTooLarge { labels },
+        PlanError::Refused { refusal, bin_mm } => {
+            JobError::Refused(refusal::message(&cut.catalogue, &plan_options, &refusal, bin_mm))
+        }
+    })?;
+    let planned = topology_of(&cut.catalogue, &plan.sequence, plan_options.shape);
+    Ok((plan, planned))
 }
 
 /// The topology of a sequence by joining all descriptors, independently of the automaton that led the search.
@@ -344,7 +391,8 @@ fn make_part(
             is_ring: map.curve().is_closed(),
             chord_mm: chord_mm * FIT_SHARE,
         };
-        let outline = clock.time(Stage::Fit, || Outline::new(&cut.catalogue, &plan.sequence, &fit))?;
+        let outline = clock
+            .time(Stage::Fit, || Outline::with_sides(&cut.catalogue, &plan.sequence, &fit, cut.sides))?;
         match clock.time(Stage::Map, || Part::new(&outline, map, planned, chord_mm * MAP_SHARE)) {
             Ok(part) => return Ok((part, outline)),
             Err(PartError::Job(error)) => return Err(error),

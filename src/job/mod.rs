@@ -1,4 +1,4 @@
-//! Whole jobs: a band along a curve, a solid from any SVG.
+//! Whole jobs: a band along a curve, a rectangle, a solid from any SVG.
 //!
 //! A builder collects options, `build()` checks them by name, `run()` computes, and the result encodes itself
 //! as files that are read again and verified before they have their names. All rooms meet here, and nothing
@@ -29,6 +29,10 @@ mod extrude;
 mod output;
 mod part;
 mod plan;
+mod rect;
+mod rect_builder;
+mod rect_report;
+mod rect_search;
 mod refusal;
 mod report;
 mod stage;
@@ -39,5 +43,8 @@ pub use error::{JobError, OutlineFault};
 pub use extrude::{ExtrudeReport, extrude};
 pub use output::{Format, Output, Target};
 pub use plan::{Plan, PlanError, PlanOptions, plan};
+pub use rect::Rect;
+pub use rect_builder::{RectBuilder, RectJob};
+pub use rect_report::{Attempt, DirectionReport, RectReport};
 pub use report::{BandReport, InputReport, SeamReport, StageTime};
 pub use stage::Stage;

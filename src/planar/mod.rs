@@ -13,6 +13,7 @@
 mod contour;
 mod grid;
 mod index;
+mod motion;
 mod overlay;
 mod region;
 mod tolerances;

@@ -1,0 +1,319 @@
+//! The choice of both directions of a rectangle (Zhou 2014 §6.2).
+//!
+//! The first pass makes a strip: a band as long as the rectangle is wide. Turned by 90 degrees it is the exemplar
+//! of the second pass, whose pieces are rows. The constraints bind the second pass only; the first is free in its
+//! topology, and which strip lets the second succeed, and at what cost, is not known before it was tried. So
+//! several ways are tried in a fixed order: strips in one component and strips as they come, each by itself and
+//! beside its mirror image (a row that is cut anywhere can then go on as its own reflection, where every strand
+//! meets itself), at the height that was asked for or at smaller ones. Of the ways that succeed at one height
+//! the cheapest second pass wins; costs compare, as all of them are measured on the width of the rectangle.
+//!
+//! Excluded: the search for a sequence itself, which is that of a band.
+
+use super::band::{Band, Cut, plan_run, read_exemplar, slice_region};
+use super::builder::BandJob;
+use super::error::JobError;
+use super::plan::Plan;
+use super::rect_builder::RectJob;
+use super::rect_report::Attempt;
+use super::stage::{Clock, Stage};
+use crate::domain::{BandMap, CurveSpec, PlanarCurve};
+use crate::exemplar::Exemplar;
+use crate::fit::Sides;
+use crate::planar::{GridPoint, Region, Tolerances};
+use crate::topology::{Goal, Topology};
+
+/// Where no height is asked for, rows are at most this part of the rectangle's height. Larger, and there are too
+/// few rows to look like a pattern; smaller, and ornaments shrink for no need.
+const TALLEST_ROW: f64 = 0.25;
+/// The heights that are tried, as parts of the first.
+const HEIGHTS: [f64; 3] = [1.0, 0.75, 0.5];
+/// Seeds of strips that are tried when those without one fail.
+const SEEDS: [u64; 2] = [1, 2];
+/// A jump in the second pass costs so many λ. The strip is only as long as the exemplar is high, so a run of it
+/// ends every few millimetres anyway; at the price of the first pass, short cycles of equal rows are the optimum.
+const JUMP_FACTOR: f64 = 10.0;
+/// What moving a row sideways costs in the second pass, as a multiple of the first pass's. A band may climb; a
+/// rectangle whose rows wander has ragged sides.
+const RISE_FACTOR: f64 = 20.0;
+/// The gap between a strip and its mirror image, as a part of the longer side. It only has to be there.
+const MIRROR_GAP: f64 = 0.01;
+/// Rows may be pressed or stretched sideways by this much to fill the width: as a band along its length.
+const STRETCH: std::ops::RangeInclusive<f64> = 0.7..=1.3;
+/// The first pass may use this part of the chord error, so that both stay within it.
+const FIRST_CHORD_SHARE: f64 = 0.5;
+
+/// Both directions, and all that was tried for them.
+pub(super) struct Found {
+    /// The strip.
+    pub(super) first: Band,
+    /// The rectangle, lying on its side.
+    pub(super) second: Band,
+    /// Where the strip and the sheet were cut, in millimetres.
+    pub(super) cuts_mm: [Vec<f64>; 2],
+    pub(super) mirrored: bool,
+    pub(super) attempts: Vec<Attempt>,
+    pub(super) chosen: usize,
+    pub(super) exemplar: Exemplar,
+}
+
+/// A second pass that has a plan.
+struct Way {
+    first: usize,
+    job: BandJob,
+    cut: Cut,
+    plan: Plan,
+    planned: Topology,
+    mirrored: bool,
+    attempt: usize,
+}
+
+/// A strip with the cuts of the exemplar that it was made of.
+struct Strip {
+    band: Band,
+    cuts_mm: Vec<f64>,
+}
+
+/// Tries one way after another.
+struct Search<'a, 'c> {
+    job: &'a RectJob,
+    /// The length of the second pass.
+    map: BandMap,
+    clock: &'a mut Clock<'c>,
+    attempts: Vec<Attempt>,
+    /// The first failure of a second pass, or of a first one as long as there is none.
+    error: Option<(bool, JobError)>,
+}
+
+/// The way that is cheapest at the first height at which any succeeds.
+pub(super) fn search(job: &RectJob, clock: &mut Clock<'_>) -> Result<Found, JobError> {
+    let own = clock.time(Stage::Read, || read_exemplar(&job.band))?;
+    let map = flat_map(job.size.height_mm(), job.size.width_mm())?;
+    let mut search = Search { job, map, clock, attempts: Vec::new(), error: None };
+    for height_mm in heights(job, &own) {
+        for goal in goals(job) {
+            if let Some(found) = search.at_height(height_mm, goal)? {
+                return Ok(found);
+            }
+        }
+    }
+    Err(search.refusal())
+}
+
+/// The map of a straight band.
+fn flat_map(length_mm: f64, height_mm: f64) -> Result<BandMap, JobError> {
+    Ok(BandMap::new(PlanarCurve::line(length_mm)?, -height_mm / 2.0, height_mm / 2.0)?)
+}
+
+fn heights(job: &RectJob, own: &Exemplar) -> Vec<f64> {
+    if let Some(height) = job.band.options.width_mm {
+        return vec![height];
+    }
+    let (low, high) = own.region().bounds_mm().unwrap_or_default();
+    let height = (high.y - low.y).min(TALLEST_ROW * job.size.height_mm());
+    HEIGHTS.iter().map(|part| part * height).collect()
+}
+
+/// What the rectangle must have. Where components are free it hangs together if it can.
+fn goals(job: &RectJob) -> Vec<Goal> {
+    let goal = job.band.options.goal;
+    match goal.components {
+        None => vec![Goal { components: Some(1), ..goal }, goal],
+        Some(_) => vec![goal],
+    }
+}
+
+impl Search<'_, '_> {
+    /// The cheapest way at one height, if any succeeds.
+    fn at_height(&mut self, height_mm: f64, goal: Goal) -> Result<Option<Found>, JobError> {
+        let mut options = self.job.band.options.clone();
+        options.width_mm = Some(height_mm);
+        let tolerances = &self.job.band.tolerances;
+        let tolerances = Tolerances::new(
+            tolerances.chord_mm() * FIRST_CHORD_SHARE,
+            tolerances.min_feature_mm(),
+            tolerances.min_gap_mm(),
+        )?;
+        let job = BandJob { options, tolerances, variety: self.job.band.variety };
+        let exemplar = self.clock.time(Stage::Read, || read_exemplar(&job))?;
+        let given = self.job.band.options.seed;
+        let seeds: Vec<Option<u64>> = match given {
+            Some(_) => vec![given],
+            // Where one component is only preferred, other strips are not worth the time.
+            None if goal != self.job.band.options.goal => vec![None],
+            None => std::iter::once(None).chain(SEEDS.map(Some)).collect(),
+        };
+        let mut strips: Vec<Strip> = Vec::new();
+        for seed in seeds {
+            let before = strips.len();
+            for first_goal in first_goals(goal) {
+                let mut job = job.clone();
+                job.options.goal = first_goal;
+                job.options.seed = seed;
+                let strip = self.strip(&job, &exemplar, &strips);
+                strips.extend(strip);
+            }
+            let mut ways = Vec::new();
+            for first in before..strips.len() {
+                for mirrored in [false, true] {
+                    ways.extend(self.way(&strips[first], first, goal, mirrored, &exemplar));
+                }
+            }
+            // Cheapest first, and in the order in which they were tried.
+            ways.sort_by(|a, b| a.plan.cost.total_cmp(&b.plan.cost).then(a.attempt.cmp(&b.attempt)));
+            for way in ways {
+                let Some(second) = self.made(&way) else { continue };
+                let strip = strips.swap_remove(way.first);
+                return Ok(Some(Found {
+                    first: strip.band,
+                    second,
+                    cuts_mm: [strip.cuts_mm, cuts_mm(&way.cut)],
+                    mirrored: way.mirrored,
+                    attempts: std::mem::take(&mut self.attempts),
+                    chosen: way.attempt,
+                    exemplar,
+                }));
+            }
+        }
+        Ok(None)
+    }
+
+    /// A strip, unless it cannot be or there is one like it.
+    fn strip(&mut self, job: &BandJob, exemplar: &Exemplar, known: &[Strip]) -> Option<Strip> {
+        self.new_strip(job, exemplar, known).unwrap_or_else(|error| {
+            self.attempts.push(Attempt::first(job, error.to_string()));
+            self.note(false, error);
+            None
+        })
+    }
+
+    fn new_strip(
+        &mut self,
+        job: &BandJob,
+        exemplar: &Exemplar,
+        known: &[Strip],
+    ) -> Result<Option<Strip>, JobError> {
+        let slice = || slice_region(job, exemplar.clone(), exemplar.region());
+        let mut cut = self.clock.time(Stage::Slice, slice)?;
+        cut.sides = Sides::Filled;
+        let map = flat_map(self.job.size.width_mm(), cut.height_mm)?;
+        let (plan, planned) = plan_run(job, &mut cut, &map, self.clock)?;
+        if known.iter().any(|strip| strip.band.plan.sequence == plan.sequence) {
+            return Ok(None);
+        }
+        let band = Band::made(job, &cut, plan, planned, &map, None, self.clock)?;
+        Ok(Some(Strip { band, cuts_mm: cuts_mm(&cut) }))
+    }
+
+    /// A second pass over the strip `first`, if there is a plan for it.
+    fn way(
+        &mut self,
+        strip: &Strip,
+        first: usize,
+        goal: Goal,
+        mirrored: bool,
+        exemplar: &Exemplar,
+    ) -> Option<Way> {
+        let mut options = self.job.band.options.clone();
+        options.along = CurveSpec::Line { length_mm: self.job.size.height_mm() };
+        options.goal = goal;
+        options.weights.jump *= JUMP_FACTOR;
+        options.weights.rise *= RISE_FACTOR;
+        let job = BandJob { options, tolerances: self.job.band.tolerances, variety: self.job.band.variety };
+        let attempt = self.attempts.len();
+        match self.rows(&job, strip, mirrored, exemplar) {
+            Ok((cut, plan, planned)) => {
+                self.attempts.push(Attempt::second(&strip.band, mirrored, Ok(&plan)));
+                Some(Way { first, job, cut, plan, planned, mirrored, attempt })
+            }
+            Err(error) => {
+                self.attempts.push(Attempt::second(&strip.band, mirrored, Err(&error)));
+                self.note(true, error);
+                None
+            }
+        }
+    }
+
+    /// The strip cut into rows, and their best sequence.
+    fn rows(
+        &mut self,
+        job: &BandJob,
+        strip: &Strip,
+        mirrored: bool,
+        exemplar: &Exemplar,
+    ) -> Result<(Cut, Plan, Topology), JobError> {
+        let sheet = sheet(&strip.band.part.region, mirrored);
+        let mut cut = self.clock.time(Stage::Slice, || slice_region(job, exemplar.clone(), &sheet))?;
+        cut.sides = Sides::Filled;
+        let (plan, planned) = plan_run(job, &mut cut, &self.map, self.clock)?;
+        Ok((cut, plan, planned))
+    }
+
+    /// Makes the rectangle of a way, lying on its side.
+    fn made(&mut self, way: &Way) -> Option<Band> {
+        let Way { job, cut, plan, planned, attempt, .. } = way;
+        let error = match Band::made(job, cut, plan.clone(), *planned, &self.map, None, self.clock) {
+            Ok(band) if STRETCH.contains(&band.report.squash) => return Some(band),
+            Ok(band) => JobError::Refused(format!(
+                "the rows would have to be pressed or stretched sideways by {:.0} % to fill the width",
+                (band.report.squash - 1.0).abs() * 100.0
+            )),
+            Err(error) => error,
+        };
+        self.attempts[*attempt].outcome = error.to_string();
+        self.note(true, error);
+        None
+    }
+
+    /// The first failure counts; those of second passes tell more.
+    fn note(&mut self, is_second: bool, error: JobError) {
+        if self.error.as_ref().is_none_or(|(known, _)| is_second && !known) {
+            self.error = Some((is_second, error));
+        }
+    }
+
+    fn refusal(self) -> JobError {
+        let ways = self.attempts.len();
+        match self.error {
+            Some((true, JobError::Refused(why))) => JobError::Refused(format!(
+                "no rectangle of {}: {ways} way(s) of making it were tried; of the first, whose rows are the pieces, {why}; another --width may help",
+                self.job.size
+            )),
+            Some((false, JobError::Refused(why))) => JobError::Refused(format!(
+                "no rectangle of {}: no strip as long as it is wide: {why}",
+                self.job.size
+            )),
+            Some((_, error)) => error,
+            None => unreachable!("a height is tried, and it either succeeds or fails with an error"),
+        }
+    }
+}
+
+/// The topologies that strips are asked for. The rows of a strip that hangs together do so too, mostly.
+fn first_goals(goal: Goal) -> Vec<Goal> {
+    let one = Goal { components: Some(1), ..Goal::default() };
+    match goal.holes {
+        Some(_) => vec![one, Goal { holes: Some(0), ..one }, Goal::default()],
+        None => vec![one, Goal::default()],
+    }
+}
+
+/// The exemplar of the second pass: the strip standing up with its lower side to the right, so that rows come in
+/// reading order, and its mirror image beside it if that is wanted.
+fn sheet(strip: &Region, mirrored: bool) -> Region {
+    let standing = strip.turned_left();
+    if !mirrored {
+        return standing;
+    }
+    let (low, high) = standing.bounds_mm().unwrap_or_default();
+    let grid = standing.grid();
+    let gap_mm = MIRROR_GAP * (high - low).max_element();
+    let by = grid.steps(2.0 * high.x + gap_mm);
+    let image = standing.mirrored().shifted(GridPoint::new(by, 0));
+    let contours = standing.contours().chain(image.contours()).cloned().collect();
+    Region::from_contours(grid, contours).expect("a strip and its image stand apart")
+}
+
+fn cuts_mm(cut: &Cut) -> Vec<f64> {
+    cut.slicing.cuts.iter().map(|c| cut.grid().mm(c.x)).collect()
+}
