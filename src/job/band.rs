@@ -36,6 +36,9 @@ const HAIRLINE_MM: f64 = 0.1;
 /// When the counts are not as planned, chords cut through a gap or a strand: smaller ones are tried.
 const CHORD_TRIES: [f64; 4] = [1.0, 0.25, 0.06, 0.015];
 
+/// What a drawing without a file is called.
+const DRAWING: &str = "the drawing";
+
 /// A band that has the planned topology, ready to be written.
 #[derive(Debug, Clone)]
 pub struct Band {
@@ -160,18 +163,15 @@ impl Band {
     ) -> Result<(BandReport, Vec<Pending>), JobError> {
         let mut clock = Clock::new(progress);
         let mut report = self.report.clone();
-        let expected = Expected {
-            components: Some(self.planned.components as usize),
-            holes: Some(self.planned.holes as usize),
-            min_feature_mm: self.job.tolerances.min_feature_mm(),
-            min_gap_mm: self.job.tolerances.min_gap_mm(),
-        };
-        // The promise at the machine's tolerance is checked on the drawing, which therefore is always made.
-        let drawing = clock.time(Stage::Svg, || self.svg())?;
-        let found = clock.time(Stage::Verify, || self.read_svg(drawing.text.as_bytes()))?;
-        let svg_name = outputs.iter().find(|o| o.format() == Format::Svg).or(outputs.first());
-        let file = svg_name.map_or_else(|| "the drawing".into(), |o| name(o.target()));
-        found.check(&expected).map_err(|mismatch| self.mismatch(file, mismatch, &found))?;
+        let expected = self.expected();
+        let (drawing, found) = self.drawn(&mut clock).map_err(|error| match error {
+            JobError::Mismatch { mismatch, remedy, .. } => {
+                let shown = outputs.iter().find(|o| o.format() == Format::Svg).or(outputs.first());
+                let file = shown.map_or_else(|| DRAWING.into(), |o| name(o.target()));
+                JobError::Mismatch { file, mismatch, remedy }
+            }
+            error => error,
+        })?;
         let mut pending = Vec::new();
         for output in outputs {
             let item = match output.format() {
@@ -218,6 +218,24 @@ impl Band {
         Ok((report, pending))
     }
 
+    /// What every file has to have.
+    fn expected(&self) -> Expected {
+        Expected {
+            components: Some(self.planned.components as usize),
+            holes: Some(self.planned.holes as usize),
+            min_feature_mm: self.job.tolerances.min_feature_mm(),
+            min_gap_mm: self.job.tolerances.min_gap_mm(),
+        }
+    }
+
+    /// The drawing, which has passed: the promise at the machine's tolerance is checked on it, so it is always made.
+    pub(super) fn drawn(&self, clock: &mut Clock<'_>) -> Result<(SvgDocument, SvgReport), JobError> {
+        let drawing = clock.time(Stage::Svg, || self.svg())?;
+        let found = clock.time(Stage::Verify, || self.read_svg(drawing.text.as_bytes()))?;
+        found.check(&self.expected()).map_err(|mismatch| self.mismatch(DRAWING.into(), mismatch, &found))?;
+        Ok((drawing, found))
+    }
+
     /// The part as an SVG drawing.
     ///
     /// # Errors
@@ -244,7 +262,7 @@ impl Band {
 
     fn read_svg(&self, bytes: &[u8]) -> Result<SvgReport, JobError> {
         verify::read_svg(bytes, self.job.tolerances.chord_mm() / 4.0)
-            .map_err(|error| JobError::Unjudged { file: "the drawing".into(), error })
+            .map_err(|error| JobError::Unjudged { file: DRAWING.into(), error })
     }
 
     fn mismatch(&self, file: std::path::PathBuf, mismatch: Mismatch, found: &SvgReport) -> JobError {

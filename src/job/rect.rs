@@ -37,8 +37,6 @@ impl Rect {
         let report = describe(job, &found);
         let mut band = found.second;
         band.part = turned_back(&band.part);
-        // What messages call the width of a band is the height of a row here.
-        band.report.width_mm = found.first.report.width_mm;
         band.report.times = clock.times;
         Ok(Self { band, report })
     }
@@ -110,8 +108,8 @@ fn describe(job: &RectJob, found: &Found) -> RectReport {
         holes: made.holes,
         thickness_mm: options.thickness_mm,
         chord_mm: job.band.tolerances.chord_mm(),
-        along_u: DirectionReport::new(&first.report, first_cuts.clone()),
-        along_v: DirectionReport::new(made, second_cuts.clone()),
+        along_u: DirectionReport::new(&first.report, first.report.width_mm, first_cuts.clone()),
+        along_v: DirectionReport::new(made, job.size.width_mm(), second_cuts.clone()),
         mirrored: found.mirrored,
         attempts: found.attempts.clone(),
         chosen_attempt: found.chosen,

@@ -51,10 +51,10 @@ pub struct DirectionReport {
 }
 
 impl DirectionReport {
-    pub(super) fn new(band: &BandReport, cuts_mm: Vec<f64>) -> Self {
+    pub(super) fn new(band: &BandReport, across_mm: f64, cuts_mm: Vec<f64>) -> Self {
         Self {
             length_mm: band.length_mm,
-            across_mm: band.width_mm,
+            across_mm,
             components: band.components,
             holes: band.holes,
             cuts_mm,
@@ -95,6 +95,9 @@ pub struct Attempt {
 }
 
 impl Attempt {
+    /// The outcome of a second pass that found a sequence.
+    pub(super) const PLANNED: &str = "planned";
+
     /// A first pass that failed.
     pub(super) fn first(job: &BandJob, outcome: String) -> Self {
         let options = &job.options;
@@ -114,7 +117,10 @@ impl Attempt {
         Self {
             mirrored: Some(mirrored),
             cost: plan.ok().map(|plan| plan.cost),
-            ..Self::first(&strip.job, plan.err().map_or_else(|| "planned".to_owned(), ToString::to_string))
+            ..Self::first(
+                &strip.job,
+                plan.err().map_or_else(|| Self::PLANNED.to_owned(), ToString::to_string),
+            )
         }
     }
 }

@@ -2,11 +2,12 @@
 //!
 //! The first pass makes a strip: a band as long as the rectangle is wide. Turned by 90 degrees it is the exemplar
 //! of the second pass, whose pieces are rows. The constraints bind the second pass only; the first is free in its
-//! topology, and which strip lets the second succeed, and at what cost, is not known before it was tried. So
-//! several ways are tried in a fixed order: strips in one component and strips as they come, each by itself and
-//! beside its mirror image (a row that is cut anywhere can then go on as its own reflection, where every strand
-//! meets itself), at the height that was asked for or at smaller ones. Of the ways that succeed at one height
-//! the cheapest second pass wins; costs compare, as all of them are measured on the width of the rectangle.
+//! topology, and which strip lets the second succeed is not known before it was tried. So several ways are tried
+//! in a fixed order: strips in one component and strips as they come, with one seed after another, at the height
+//! that was asked for or at smaller ones. A strip whose rows do not follow each other well is also tried beside
+//! its mirror image: a row that is cut anywhere can then go on as its own reflection, where every strand meets
+//! itself. Of the two the cheaper is taken; their costs compare, as both are measured on the rectangle's width. The first
+//! strip over which a second pass comes out right, in its topology and at the machine's tolerance, is the one.
 //!
 //! Excluded: the search for a sequence itself, which is that of a band.
 
@@ -27,7 +28,7 @@ use crate::topology::{Goal, Topology};
 /// few rows to look like a pattern; smaller, and ornaments shrink for no need.
 const TALLEST_ROW: f64 = 0.25;
 /// The heights that are tried, as parts of the first.
-const HEIGHTS: [f64; 3] = [1.0, 0.75, 0.5];
+const HEIGHTS: [f64; 2] = [1.0, 0.6];
 /// Seeds of strips that are tried when those without one fail.
 const SEEDS: [u64; 2] = [1, 2];
 /// A jump in the second pass costs so many λ. The strip is only as long as the exemplar is high, so a run of it
@@ -35,7 +36,12 @@ const SEEDS: [u64; 2] = [1, 2];
 const JUMP_FACTOR: f64 = 10.0;
 /// What moving a row sideways costs in the second pass, as a multiple of the first pass's. A band may climb; a
 /// rectangle whose rows wander has ragged sides.
-const RISE_FACTOR: f64 = 20.0;
+const RISE_FACTOR: f64 = 200.0;
+/// A second pass that costs no more than so many jumps for each height of a row is good enough: the mirror image is
+/// not tried. Less, and searches take longer; more, and rows are joined that were better mirrored.
+const GOOD_ROW: f64 = 5.0;
+/// The most ways that are tried. More, and a refusal takes longer than anyone waits for it.
+const MOST_ATTEMPTS: usize = 12;
 /// The gap between a strip and its mirror image, as a part of the longer side. It only has to be there.
 const MIRROR_GAP: f64 = 0.01;
 /// Rows may be pressed or stretched sideways by this much to fill the width: as a band along its length.
@@ -59,7 +65,6 @@ pub(super) struct Found {
 
 /// A second pass that has a plan.
 struct Way {
-    first: usize,
     job: BandJob,
     cut: Cut,
     plan: Plan,
@@ -85,7 +90,7 @@ struct Search<'a, 'c> {
     error: Option<(bool, JobError)>,
 }
 
-/// The way that is cheapest at the first height at which any succeeds.
+/// The first strip over which a second pass comes out right, with that pass.
 pub(super) fn search(job: &RectJob, clock: &mut Clock<'_>) -> Result<Found, JobError> {
     let own = clock.time(Stage::Read, || read_exemplar(&job.band))?;
     let map = flat_map(job.size.height_mm(), job.size.width_mm())?;
@@ -124,7 +129,7 @@ fn goals(job: &RectJob) -> Vec<Goal> {
 }
 
 impl Search<'_, '_> {
-    /// The cheapest way at one height, if any succeeds.
+    /// The first strip of one height that does, if any.
     fn at_height(&mut self, height_mm: f64, goal: Goal) -> Result<Option<Found>, JobError> {
         let mut options = self.job.band.options.clone();
         options.width_mm = Some(height_mm);
@@ -144,49 +149,65 @@ impl Search<'_, '_> {
             None => std::iter::once(None).chain(SEEDS.map(Some)).collect(),
         };
         let mut strips: Vec<Strip> = Vec::new();
+        let mut refused = Vec::new();
         for seed in seeds {
-            let before = strips.len();
             for first_goal in first_goals(goal) {
+                // A seed changes what is cheap, not what can be.
+                if refused.contains(&first_goal) || self.attempts.len() >= MOST_ATTEMPTS {
+                    continue;
+                }
                 let mut job = job.clone();
                 job.options.goal = first_goal;
                 job.options.seed = seed;
-                let strip = self.strip(&job, &exemplar, &strips);
-                strips.extend(strip);
-            }
-            let mut ways = Vec::new();
-            for first in before..strips.len() {
-                for mirrored in [false, true] {
-                    ways.extend(self.way(&strips[first], first, goal, mirrored, &exemplar));
+                match self.new_strip(&job, &exemplar, &strips) {
+                    Ok(None) => {}
+                    Ok(Some(strip)) => {
+                        if let Some((way, second)) = self.over_strip(&strip, goal, &exemplar) {
+                            return Ok(Some(Found {
+                                first: strip.band,
+                                second,
+                                cuts_mm: [strip.cuts_mm, cuts_mm(&way.cut)],
+                                mirrored: way.mirrored,
+                                attempts: std::mem::take(&mut self.attempts),
+                                chosen: way.attempt,
+                                exemplar,
+                            }));
+                        }
+                        strips.push(strip);
+                    }
+                    Err(error) => {
+                        refused.push(first_goal);
+                        self.attempts.push(Attempt::first(&job, error.to_string()));
+                        self.note(false, error);
+                    }
                 }
-            }
-            // Cheapest first, and in the order in which they were tried.
-            ways.sort_by(|a, b| a.plan.cost.total_cmp(&b.plan.cost).then(a.attempt.cmp(&b.attempt)));
-            for way in ways {
-                let Some(second) = self.made(&way) else { continue };
-                let strip = strips.swap_remove(way.first);
-                return Ok(Some(Found {
-                    first: strip.band,
-                    second,
-                    cuts_mm: [strip.cuts_mm, cuts_mm(&way.cut)],
-                    mirrored: way.mirrored,
-                    attempts: std::mem::take(&mut self.attempts),
-                    chosen: way.attempt,
-                    exemplar,
-                }));
             }
         }
         Ok(None)
     }
 
-    /// A strip, unless it cannot be or there is one like it.
-    fn strip(&mut self, job: &BandJob, exemplar: &Exemplar, known: &[Strip]) -> Option<Strip> {
-        self.new_strip(job, exemplar, known).unwrap_or_else(|error| {
-            self.attempts.push(Attempt::first(job, error.to_string()));
-            self.note(false, error);
-            None
+    /// The cheapest second pass over a strip that comes out right. The mirror image doubles the pieces, so it is
+    /// left alone where the strip follows itself well enough.
+    fn over_strip(&mut self, strip: &Strip, goal: Goal, exemplar: &Exemplar) -> Option<(Way, Band)> {
+        let mut ways: Vec<Way> = self.way(strip, goal, false, exemplar).into_iter().collect();
+        let rows = self.job.size.height_mm() / strip.band.report.width_mm;
+        let is_good = |way: &Way| way.plan.cost <= GOOD_ROW * way.job.options.weights.jump.max(1.0) * rows;
+        if let Some(at) = ways.iter().position(is_good)
+            && let Some(second) = self.made(&ways[at], strip)
+        {
+            return Some((ways.swap_remove(at), second));
+        }
+        ways.extend(self.way(strip, goal, true, exemplar));
+        // Cheapest first, and in the order in which they were tried.
+        ways.sort_by(|a, b| a.plan.cost.total_cmp(&b.plan.cost).then(a.attempt.cmp(&b.attempt)));
+        ways.retain(|way| self.attempts[way.attempt].outcome == Attempt::PLANNED);
+        ways.into_iter().find_map(|way| {
+            let second = self.made(&way, strip)?;
+            Some((way, second))
         })
     }
 
+    /// A strip, unless there is one like it.
     fn new_strip(
         &mut self,
         job: &BandJob,
@@ -205,15 +226,8 @@ impl Search<'_, '_> {
         Ok(Some(Strip { band, cuts_mm: cuts_mm(&cut) }))
     }
 
-    /// A second pass over the strip `first`, if there is a plan for it.
-    fn way(
-        &mut self,
-        strip: &Strip,
-        first: usize,
-        goal: Goal,
-        mirrored: bool,
-        exemplar: &Exemplar,
-    ) -> Option<Way> {
+    /// A second pass over a strip, if there is a plan for it.
+    fn way(&mut self, strip: &Strip, goal: Goal, mirrored: bool, exemplar: &Exemplar) -> Option<Way> {
         let mut options = self.job.band.options.clone();
         options.along = CurveSpec::Line { length_mm: self.job.size.height_mm() };
         options.goal = goal;
@@ -224,7 +238,7 @@ impl Search<'_, '_> {
         match self.rows(&job, strip, mirrored, exemplar) {
             Ok((cut, plan, planned)) => {
                 self.attempts.push(Attempt::second(&strip.band, mirrored, Ok(&plan)));
-                Some(Way { first, job, cut, plan, planned, mirrored, attempt })
+                Some(Way { job, cut, plan, planned, mirrored, attempt })
             }
             Err(error) => {
                 self.attempts.push(Attempt::second(&strip.band, mirrored, Err(&error)));
@@ -250,10 +264,18 @@ impl Search<'_, '_> {
     }
 
     /// Makes the rectangle of a way, lying on its side.
-    fn made(&mut self, way: &Way) -> Option<Band> {
+    fn made(&mut self, way: &Way, strip: &Strip) -> Option<Band> {
         let Way { job, cut, plan, planned, attempt, .. } = way;
         let error = match Band::made(job, cut, plan.clone(), *planned, &self.map, None, self.clock) {
-            Ok(band) if STRETCH.contains(&band.report.squash) => return Some(band),
+            Ok(mut band) if STRETCH.contains(&band.report.squash) => {
+                // What messages call the width of a band is the height of a row here.
+                band.report.width_mm = strip.band.report.width_mm;
+                // Ink that the machine cannot make may be thicker another way.
+                match band.drawn(self.clock) {
+                    Ok(_) => return Some(band),
+                    Err(error) => error,
+                }
+            }
             Ok(band) => JobError::Refused(format!(
                 "the rows would have to be pressed or stretched sideways by {:.0} % to fill the width",
                 (band.report.squash - 1.0).abs() * 100.0
