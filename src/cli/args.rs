@@ -119,6 +119,9 @@ pub(super) struct RectArguments {
     /// Width and height, such as 120x80mm
     #[arg(long, value_name = "WxH", value_parser = values::size, allow_hyphen_values = true)]
     pub(super) size: RectSize,
+    /// Make opposite sides match, so that copies join
+    #[arg(long)]
+    pub(super) tile: bool,
     #[command(flatten)]
     pub(super) pattern: PatternArguments,
 }

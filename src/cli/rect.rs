@@ -11,6 +11,7 @@ pub(super) fn run_rect(arguments: &RectArguments) -> Result<ExitCode, CliError> 
     let (outputs, report_target) = destinations(&arguments.pattern)?;
     let quiet = arguments.pattern.quiet;
     let job = RectBuilder::new(&arguments.exemplar, arguments.size)
+        .tile(arguments.tile)
         .options(|band| with_pattern(band, &arguments.pattern))
         .build()?;
     job.check_outputs(&outputs, report_target.as_ref())?;
@@ -34,5 +35,14 @@ fn say_rect(report: &RectReport) {
         report.along_v.pieces_in_result,
         report.attempts.len()
     );
+    if let Some(tiling) = &report.tiling {
+        say!(
+            "copies join at {} place(s) across and {} upwards: the tiling has {} component(s) and {} hole(s) for each tile",
+            tiling.joins_across,
+            tiling.joins_up,
+            tiling.components,
+            tiling.holes
+        );
+    }
     say_found(report.min_feature, report.min_gap, &report.notes, &report.files);
 }

@@ -29,6 +29,8 @@ pub enum Sides {
     Free,
     /// Ink fills the band from side to side: the run is pressed or stretched.
     Filled,
+    /// What lies on them stays there: pieces keep their heights, and only what is between the sides bends.
+    Held,
 }
 
 /// A closed contour in band coordinates, with the ink on its left.
@@ -101,7 +103,7 @@ impl Outline {
         options: &FitOptions,
         sides: Sides,
     ) -> Result<Self, FitError> {
-        let placed = Placed::new(catalogue, sequence, options)?;
+        let placed = Placed::new(catalogue, sequence, options, sides)?;
         let bent: Vec<Bent> = (0..sequence.len()).map(|i| placed.bend(i, options.chord_mm)).collect();
         let contours = placed.link(&bent, options);
         let seams = placed.seams(&bent);
@@ -123,6 +125,7 @@ impl Outline {
         let half = height_mm / 2.0;
         let fits = height_mm / (high - low);
         self.squash = match sides {
+            Sides::Held => return,
             Sides::Free if low >= -half && high <= half => return,
             Sides::Free => fits.min(1.0),
             Sides::Filled => fits,
@@ -143,6 +146,8 @@ struct Placed<'a> {
     joints: Vec<Joint>,
     stretch: f64,
     is_ring: bool,
+    /// The height above and below the middle that stays where it is.
+    held_mm: Option<f64>,
 }
 
 struct Joint {
@@ -158,7 +163,12 @@ struct Bent {
 }
 
 impl<'a> Placed<'a> {
-    fn new(catalogue: &'a Catalogue, sequence: &[usize], options: &FitOptions) -> Result<Self, FitError> {
+    fn new(
+        catalogue: &'a Catalogue,
+        sequence: &[usize],
+        options: &FitOptions,
+        sides: Sides,
+    ) -> Result<Self, FitError> {
         let pieces: Vec<&Piece> = sequence.iter().map(|&p| &catalogue.pieces()[p]).collect();
         let (Some(&first), Some(&last)) = (sequence.first(), sequence.last()) else {
             return Err(FitError::Empty);
@@ -174,7 +184,11 @@ impl<'a> Placed<'a> {
         let rises: Vec<f64> = table.iter().map(|j| j.rise_mm).collect();
         let portals: Vec<usize> =
             joins.iter().map(|&(from, _)| catalogue.pieces()[from].right_portals()).collect();
-        let offsets = offsets(&rises, &portals, options.is_ring);
+        let held_mm = (sides == Sides::Held).then_some(options.height_mm / 2.0);
+        let offsets = match held_mm {
+            Some(_) => vec![0.0; pieces.len()],
+            None => offsets(&rises, &portals, options.is_ring),
+        };
         // The ink of an open run fills the band from end to end.
         let blank = |p: Option<&&Piece>, of: fn((f64, f64)) -> f64| match p {
             Some(p) if !options.is_ring => of(p.blanks_mm()),
@@ -199,7 +213,7 @@ impl<'a> Placed<'a> {
                 Joint::new(pieces[i], offsets[i], pieces[j], offsets[j], table[i].is_natural)
             })
             .collect();
-        Ok(Self { pieces, starts_mm, offsets, joints, stretch, is_ring: options.is_ring })
+        Ok(Self { pieces, starts_mm, offsets, joints, stretch, is_ring: options.is_ring, held_mm })
     }
 
     fn joint_before(&self, i: usize) -> Option<&Joint> {
@@ -217,8 +231,13 @@ impl<'a> Placed<'a> {
             self.joint_before(i).map_or(&[][..], |j| &j.targets),
             self.joints.get(i).map_or(&[][..], |j| &j.targets),
         );
-        let warp =
-            StripWarp::new(piece.width_mm, (&piece.left, left), (&piece.right, right), self.offsets[i]);
+        let warp = StripWarp::held(
+            piece.width_mm,
+            (&piece.left, left),
+            (&piece.right, right),
+            self.offsets[i],
+            self.held_mm,
+        );
         let place = |p: DVec2| {
             let bent = warp.map(p);
             DVec2::new(bent.x * self.stretch, bent.y)

@@ -20,7 +20,7 @@ use crate::export::{self, SvgDocument, SvgOptions};
 use crate::fabricate;
 use crate::fit::{FitOptions, Outline, Sides};
 use crate::pieces::{Catalogue, CostWeights};
-use crate::planar::{Grid, Region};
+use crate::planar::Region;
 use crate::reeb::{ReebGraph, Slicing, SlicingRule};
 use crate::solver::autocorrelation;
 use crate::topology::{Shape, Topology};
@@ -35,6 +35,13 @@ const SVG_SHARE: f64 = 0.5;
 const HAIRLINE_MM: f64 = 0.1;
 /// When the counts are not as planned, chords cut through a gap or a strand: smaller ones are tried.
 const CHORD_TRIES: [f64; 4] = [1.0, 0.25, 0.06, 0.015];
+
+/// A drawing that has passed, and what was found in it.
+#[derive(Debug, Clone)]
+pub(super) struct Drawn {
+    drawing: SvgDocument,
+    pub(super) found: SvgReport,
+}
 
 /// What a drawing without a file is called.
 const DRAWING: &str = "the drawing";
@@ -64,9 +71,9 @@ pub(super) struct Cut {
 }
 
 impl Cut {
-    /// The grid that the cuts are on.
-    pub(super) fn grid(&self) -> Grid {
-        self.region.grid()
+    /// What is cut.
+    pub(super) fn region(&self) -> &Region {
+        &self.region
     }
 
     /// Weighs every join instead of the cheapest few; `false` if that changes nothing.
@@ -76,7 +83,11 @@ impl Cut {
             return false;
         }
         self.weights.successors = pieces;
+        let own_ends_only = self.catalogue.has_own_ends_only();
         self.catalogue = Catalogue::new(&self.region, &self.slicing.cuts, &self.weights);
+        if own_ends_only {
+            self.catalogue = self.catalogue.clone().with_own_ends_only();
+        }
         true
     }
 }
@@ -147,7 +158,7 @@ impl Band {
         progress: &mut dyn FnMut(Stage),
     ) -> Result<BandReport, JobError> {
         self.job.check_outputs(outputs, report_file)?;
-        let (report, mut pending) = self.deliver(outputs, progress)?;
+        let (report, mut pending) = self.deliver(outputs, None, progress)?;
         if let Some(target) = report_file {
             pending.push(Pending::new(target, report.to_json().into_bytes())?);
         }
@@ -155,16 +166,19 @@ impl Band {
         Ok(report)
     }
 
-    /// Every output, encoded, read again and counted, on its way to its name; and the report.
+    /// Every output, encoded, read again and counted, on its way to its name; and the report. `drawn` is what
+    /// [`Band::drawn`] gave, if it was asked before.
     pub(super) fn deliver(
         &self,
         outputs: &[Output],
+        drawn: Option<Drawn>,
         progress: &mut dyn FnMut(Stage),
     ) -> Result<(BandReport, Vec<Pending>), JobError> {
         let mut clock = Clock::new(progress);
         let mut report = self.report.clone();
         let expected = self.expected();
-        let (drawing, found) = self.drawn(&mut clock).map_err(|error| match error {
+        let drawn = drawn.map_or_else(|| self.drawn(&mut clock), Ok);
+        let Drawn { drawing, found } = drawn.map_err(|error| match error {
             JobError::Mismatch { mismatch, remedy, .. } => {
                 let shown = outputs.iter().find(|o| o.format() == Format::Svg).or(outputs.first());
                 let file = shown.map_or_else(|| DRAWING.into(), |o| name(o.target()));
@@ -229,11 +243,11 @@ impl Band {
     }
 
     /// The drawing, which has passed: the promise at the machine's tolerance is checked on it, so it is always made.
-    pub(super) fn drawn(&self, clock: &mut Clock<'_>) -> Result<(SvgDocument, SvgReport), JobError> {
+    pub(super) fn drawn(&self, clock: &mut Clock<'_>) -> Result<Drawn, JobError> {
         let drawing = clock.time(Stage::Svg, || self.svg())?;
         let found = clock.time(Stage::Verify, || self.read_svg(drawing.text.as_bytes()))?;
         found.check(&self.expected()).map_err(|mismatch| self.mismatch(DRAWING.into(), mismatch, &found))?;
-        Ok((drawing, found))
+        Ok(Drawn { drawing, found })
     }
 
     /// The part as an SVG drawing.

@@ -33,6 +33,7 @@ mod rect;
 mod rect_builder;
 mod rect_report;
 mod rect_search;
+mod rect_tile;
 mod refusal;
 mod report;
 mod stage;

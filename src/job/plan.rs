@@ -164,7 +164,10 @@ fn problem<'a>(catalogue: &'a Catalogue, options: &PlanOptions, bin_mm: f64) -> 
         })
         .collect();
     // Only the exemplar's own ends are no jumps.
-    let end_cost = |is_own: bool| Some(if is_own { 0 } else { micro(options.weights.jump) });
+    let end_cost = |is_own: bool| match is_own {
+        true => Some(0),
+        false => (!catalogue.has_own_ends_only()).then(|| micro(options.weights.jump)),
+    };
     let begin =
         pieces.iter().enumerate().map(|(i, p)| if p.left.is_empty() { end_cost(i == 0) } else { None });
     let end =

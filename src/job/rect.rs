@@ -8,25 +8,24 @@
 //! The ink fills the rectangle: the run of each pass has the exact length between its first and its last ink,
 //! and across it the rows are pressed or stretched, at most as much as a band may be along its length.
 
-use glam::DVec2;
-
-use super::band::Band;
+use super::band::{Band, Drawn};
 use super::error::JobError;
 use super::output::{Output, Pending, Target, persist};
-use super::part::Part;
 use super::plan::Plan;
 use super::rect_builder::RectJob;
 use super::rect_report::{DirectionReport, RectReport};
-use super::rect_search::{Found, search};
+use super::rect_search::{Found, Made, search};
 use super::stage::{Clock, Stage};
-use crate::planar::{GridPoint, Region};
+use crate::planar::Region;
 use crate::topology::Topology;
+use crate::verify::Tiling;
 
 /// A rectangle that has the planned topology, ready to be written.
 #[derive(Debug, Clone)]
 pub struct Rect {
     /// The second pass, turned back.
     band: Band,
+    drawn: Drawn,
     report: RectReport,
 }
 
@@ -35,10 +34,9 @@ impl Rect {
         let mut clock = Clock::new(progress);
         let found = search(job, &mut clock)?;
         let report = describe(job, &found);
-        let mut band = found.second;
-        band.part = turned_back(&band.part);
+        let Made { mut band, drawn, .. } = found.second;
         band.report.times = clock.times;
-        Ok(Self { band, report })
+        Ok(Self { band, drawn, report })
     }
 
     /// The part in millimetres, y up from the lower left corner of its page.
@@ -49,6 +47,11 @@ impl Rect {
     /// The plan of the second pass: rows, from the top.
     pub fn plan(&self) -> &Plan {
         self.band.plan()
+    }
+
+    /// The tiling that copies make, if the rectangle is a tile.
+    pub fn tiling(&self) -> Option<Tiling> {
+        self.report.tiling
     }
 
     /// What the rows add up to.
@@ -68,7 +71,7 @@ impl Rect {
         progress: &mut dyn FnMut(Stage),
     ) -> Result<RectReport, JobError> {
         self.band.job.check_outputs(outputs, report_file)?;
-        let (found, mut pending) = self.band.deliver(outputs, progress)?;
+        let (found, mut pending) = self.band.deliver(outputs, Some(self.drawn.clone()), progress)?;
         let mut report = self.report.clone();
         report.measured(found);
         if let Some(target) = report_file {
@@ -79,20 +82,10 @@ impl Rect {
     }
 }
 
-/// A part that lies on its left side, set upright on its page.
-fn turned_back(part: &Part) -> Part {
-    let (low, high) = part.region.bounds_mm().unwrap_or_default();
-    let grid = part.region.grid();
-    // The turn takes x to −y; the margin below is that which was on the right.
-    let up = grid.steps(low.x) + grid.steps(high.x);
-    let region = part.region.turned_right().shifted(GridPoint::new(0, up));
-    Part { region, page_mm: DVec2::new(part.page_mm.y, part.page_mm.x) }
-}
-
 fn describe(job: &RectJob, found: &Found) -> RectReport {
     let Found { first, second, cuts_mm: [first_cuts, second_cuts], exemplar, .. } = found;
     let options = &job.band.options;
-    let made = &second.report;
+    let made = &second.band.report;
     // Notes on the exemplar itself come with the second pass too.
     let own = first.report.notes.iter().filter(|note| !exemplar.notes().contains(note));
     let notes = own.map(|note| format!("first pass: {note}")).collect();
@@ -111,12 +104,13 @@ fn describe(job: &RectJob, found: &Found) -> RectReport {
         along_u: DirectionReport::new(&first.report, first.report.width_mm, first_cuts.clone()),
         along_v: DirectionReport::new(made, job.size.width_mm(), second_cuts.clone()),
         mirrored: found.mirrored,
+        tiling: second.tiling,
         attempts: found.attempts.clone(),
         chosen_attempt: found.chosen,
         min_feature: None,
         min_gap: None,
         area_mm2: made.area_mm2,
-        page_mm: [made.page_mm[1], made.page_mm[0]],
+        page_mm: second.band.part.page_mm.to_array(),
         vertices: made.vertices,
         svg_segments: None,
         triangles: None,

@@ -14,13 +14,14 @@ use crate::domain::{CurveSpec, RectSize};
 pub struct RectBuilder {
     band: BandBuilder,
     size: RectSize,
+    tile: bool,
 }
 
 impl RectBuilder {
     /// A rectangle of the exemplar in an SVG file.
     pub fn new(exemplar: impl AsRef<Path>, size: RectSize) -> Self {
         let along = CurveSpec::Line { length_mm: size.width_mm() };
-        Self { band: BandBuilder::new(exemplar, along), size }
+        Self { band: BandBuilder::new(exemplar, along), size, tile: false }
     }
 
     /// Sets options that a rectangle shares with a band. Its constraints hold for the finished rectangle, its
@@ -38,6 +39,13 @@ impl RectBuilder {
     pub fn options(mut self, set: impl FnOnce(BandBuilder) -> BandBuilder) -> Self {
         self.band = set(self.band);
         self.band.along = CurveSpec::Line { length_mm: self.size.width_mm() };
+        self
+    }
+
+    /// Whether opposite sides match, so that copies join side by side and one above the other. What is asked for
+    /// holds for one tile as it is written; the report says what the tiling has.
+    pub fn tile(mut self, tile: bool) -> Self {
+        self.tile = tile;
         self
     }
 
@@ -62,7 +70,7 @@ impl RectBuilder {
                 wanted: "a pattern can close only along a closed curve; leave it out".to_owned(),
             });
         }
-        Ok(RectJob { band, size: self.size })
+        Ok(RectJob { band, size: self.size, tile: self.tile })
     }
 }
 
@@ -71,6 +79,7 @@ impl RectBuilder {
 pub struct RectJob {
     pub(super) band: BandJob,
     pub(super) size: RectSize,
+    pub(super) tile: bool,
 }
 
 impl RectJob {

@@ -7,7 +7,7 @@ use super::builder::BandJob;
 use super::error::JobError;
 use super::plan::Plan;
 use super::report::{BandReport, InputReport, SeamReport, StageTime};
-use crate::verify::Narrowest;
+use crate::verify::{Narrowest, Tiling};
 
 /// One of the two passes of a rectangle. Lengths are millimetres.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -156,6 +156,8 @@ pub struct RectReport {
     pub along_v: DirectionReport,
     /// Whether rows were also taken from the mirror image of the strip, whose pieces come after its own.
     pub mirrored: bool,
+    /// The tiling that copies make, counted on the drawing; null when no tile was asked for.
+    pub tiling: Option<Tiling>,
     /// The ways that were tried, in order.
     pub attempts: Vec<Attempt>,
     /// The one that was chosen, counted from 0.

@@ -11,18 +11,23 @@
 //!
 //! Excluded: the search for a sequence itself, which is that of a band.
 
-use super::band::{Band, Cut, plan_run, read_exemplar, slice_region};
+use glam::DVec2;
+
+use super::band::{Band, Cut, Drawn, plan_run, read_exemplar, slice_region};
 use super::builder::BandJob;
 use super::error::JobError;
+use super::part::Part;
 use super::plan::Plan;
 use super::rect_builder::RectJob;
 use super::rect_report::Attempt;
+use super::rect_tile::{clear_sides, join_own_copies, opened, side_by_side};
 use super::stage::{Clock, Stage};
 use crate::domain::{BandMap, CurveSpec, PlanarCurve};
 use crate::exemplar::Exemplar;
 use crate::fit::Sides;
 use crate::planar::{GridPoint, Region, Tolerances};
 use crate::topology::{Goal, Topology};
+use crate::verify::{self, Tiling};
 
 /// Where no height is asked for, rows are at most this part of the rectangle's height. Larger, and there are too
 /// few rows to look like a pattern; smaller, and ornaments shrink for no need.
@@ -42,8 +47,6 @@ const RISE_FACTOR: f64 = 200.0;
 const GOOD_ROW: f64 = 5.0;
 /// The most ways that are tried. More, and a refusal takes longer than anyone waits for it.
 const MOST_ATTEMPTS: usize = 12;
-/// The gap between a strip and its mirror image, as a part of the longer side. It only has to be there.
-const MIRROR_GAP: f64 = 0.01;
 /// Rows may be pressed or stretched sideways by this much to fill the width: as a band along its length.
 const STRETCH: std::ops::RangeInclusive<f64> = 0.7..=1.3;
 /// The first pass may use this part of the chord error, so that both stay within it.
@@ -53,8 +56,8 @@ const FIRST_CHORD_SHARE: f64 = 0.5;
 pub(super) struct Found {
     /// The strip.
     pub(super) first: Band,
-    /// The rectangle, lying on its side.
-    pub(super) second: Band,
+    /// The rectangle.
+    pub(super) second: Made,
     /// Where the strip and the sheet were cut, in millimetres.
     pub(super) cuts_mm: [Vec<f64>; 2],
     pub(super) mirrored: bool,
@@ -71,6 +74,14 @@ struct Way {
     planned: Topology,
     mirrored: bool,
     attempt: usize,
+}
+
+/// A rectangle that has passed.
+pub(super) struct Made {
+    pub(super) band: Band,
+    pub(super) drawn: Drawn,
+    /// What its copies make, if it is a tile.
+    pub(super) tiling: Option<Tiling>,
 }
 
 /// A strip with the cuts of the exemplar that it was made of.
@@ -188,7 +199,7 @@ impl Search<'_, '_> {
 
     /// The cheapest second pass over a strip that comes out right. The mirror image doubles the pieces, so it is
     /// left alone where the strip follows itself well enough.
-    fn over_strip(&mut self, strip: &Strip, goal: Goal, exemplar: &Exemplar) -> Option<(Way, Band)> {
+    fn over_strip(&mut self, strip: &Strip, goal: Goal, exemplar: &Exemplar) -> Option<(Way, Made)> {
         let mut ways: Vec<Way> = self.way(strip, goal, false, exemplar).into_iter().collect();
         let rows = self.job.size.height_mm() / strip.band.report.width_mm;
         let is_good = |way: &Way| way.plan.cost <= GOOD_ROW * way.job.options.weights.jump.max(1.0) * rows;
@@ -214,8 +225,13 @@ impl Search<'_, '_> {
         exemplar: &Exemplar,
         known: &[Strip],
     ) -> Result<Option<Strip>, JobError> {
-        let slice = || slice_region(job, exemplar.clone(), exemplar.region());
-        let mut cut = self.clock.time(Stage::Slice, slice)?;
+        let mut slice =
+            |region: &Region| self.clock.time(Stage::Slice, || slice_region(job, exemplar.clone(), region));
+        let mut cut = slice(exemplar.region())?;
+        if self.job.tile {
+            cut = slice(&opened(exemplar.region(), None, &cut.slicing.cuts)?)?;
+            join_own_copies(&mut cut, false);
+        }
         cut.sides = Sides::Filled;
         let map = flat_map(self.job.size.width_mm(), cut.height_mm)?;
         let (plan, planned) = plan_run(job, &mut cut, &map, self.clock)?;
@@ -256,35 +272,55 @@ impl Search<'_, '_> {
         mirrored: bool,
         exemplar: &Exemplar,
     ) -> Result<(Cut, Plan, Topology), JobError> {
-        let sheet = sheet(&strip.band.part.region, mirrored);
-        let mut cut = self.clock.time(Stage::Slice, || slice_region(job, exemplar.clone(), &sheet))?;
-        cut.sides = Sides::Filled;
+        let mut slice =
+            |region: &Region| self.clock.time(Stage::Slice, || slice_region(job, exemplar.clone(), region));
+        // The lower side to the right, so that rows come in reading order.
+        let standing = strip.band.part.region.turned_left();
+        let image = mirrored.then(|| standing.mirrored());
+        let mut cut;
+        if self.job.tile {
+            cut = slice(&standing)?;
+            clear_sides(&mut cut);
+            cut = slice(&opened(&standing, image.as_ref(), &cut.slicing.cuts)?)?;
+            join_own_copies(&mut cut, true);
+        } else {
+            let sheet: Vec<&Region> = std::iter::once(&standing).chain(&image).collect();
+            cut = slice(&side_by_side(&sheet))?;
+            cut.sides = Sides::Filled;
+        }
         let (plan, planned) = plan_run(job, &mut cut, &self.map, self.clock)?;
         Ok((cut, plan, planned))
     }
 
-    /// Makes the rectangle of a way, lying on its side.
-    fn made(&mut self, way: &Way, strip: &Strip) -> Option<Band> {
-        let Way { job, cut, plan, planned, attempt, .. } = way;
-        let error = match Band::made(job, cut, plan.clone(), *planned, &self.map, None, self.clock) {
-            Ok(mut band) if STRETCH.contains(&band.report.squash) => {
-                // What messages call the width of a band is the height of a row here.
-                band.report.width_mm = strip.band.report.width_mm;
-                // Ink that the machine cannot make may be thicker another way.
-                match band.drawn(self.clock) {
-                    Ok(_) => return Some(band),
-                    Err(error) => error,
-                }
-            }
-            Ok(band) => JobError::Refused(format!(
+    /// The rectangle of a way, upright, if it comes out right.
+    fn made(&mut self, way: &Way, strip: &Strip) -> Option<Made> {
+        self.try_making(way, strip)
+            .map_err(|error| {
+                self.attempts[way.attempt].outcome = error.to_string();
+                self.note(true, error);
+            })
+            .ok()
+    }
+
+    fn try_making(&mut self, way: &Way, strip: &Strip) -> Result<Made, JobError> {
+        let Way { job, cut, plan, planned, .. } = way;
+        let mut band = Band::made(job, cut, plan.clone(), *planned, &self.map, None, self.clock)?;
+        if !STRETCH.contains(&band.report.squash) {
+            return Err(JobError::Refused(format!(
                 "the rows would have to be pressed or stretched sideways by {:.0} % to fill the width",
                 (band.report.squash - 1.0).abs() * 100.0
-            )),
-            Err(error) => error,
+            )));
+        }
+        band.part = turned_back(&band.part);
+        // What messages call the width of a band is the height of a row here.
+        band.report.width_mm = strip.band.report.width_mm;
+        // Ink that the machine cannot make may be thicker another way.
+        let drawn = band.drawn(self.clock)?;
+        let tiling = match self.job.tile {
+            true => Some(self.clock.time(Stage::Verify, || verify::tiling(&drawn.found.region))?),
+            false => None,
         };
-        self.attempts[*attempt].outcome = error.to_string();
-        self.note(true, error);
-        None
+        Ok(Made { band, drawn, tiling })
     }
 
     /// The first failure counts; those of second passes tell more.
@@ -320,22 +356,16 @@ fn first_goals(goal: Goal) -> Vec<Goal> {
     }
 }
 
-/// The exemplar of the second pass: the strip standing up with its lower side to the right, so that rows come in
-/// reading order, and its mirror image beside it if that is wanted.
-fn sheet(strip: &Region, mirrored: bool) -> Region {
-    let standing = strip.turned_left();
-    if !mirrored {
-        return standing;
-    }
-    let (low, high) = standing.bounds_mm().unwrap_or_default();
-    let grid = standing.grid();
-    let gap_mm = MIRROR_GAP * (high - low).max_element();
-    let by = grid.steps(2.0 * high.x + gap_mm);
-    let image = standing.mirrored().shifted(GridPoint::new(by, 0));
-    let contours = standing.contours().chain(image.contours()).cloned().collect();
-    Region::from_contours(grid, contours).expect("a strip and its image stand apart")
+/// A part that lies on its left side, set upright on its page.
+fn turned_back(part: &Part) -> Part {
+    let (low, high) = part.region.bounds_mm().unwrap_or_default();
+    let grid = part.region.grid();
+    // The turn takes x to −y; the margin below is that which was on the right.
+    let up = grid.steps(low.x) + grid.steps(high.x);
+    let region = part.region.turned_right().shifted(GridPoint::new(0, up));
+    Part { region, page_mm: DVec2::new(part.page_mm.y, part.page_mm.x) }
 }
 
 fn cuts_mm(cut: &Cut) -> Vec<f64> {
-    cut.slicing.cuts.iter().map(|c| cut.grid().mm(c.x)).collect()
+    cut.slicing.cuts.iter().map(|c| cut.region().grid().mm(c.x)).collect()
 }

@@ -80,6 +80,7 @@ pub struct Catalogue {
     joins: Vec<Vec<Join>>,
     width_mm: f64,
     height_mm: f64,
+    own_ends_only: bool,
 }
 
 /// How many jumps a join costs that sets the end of the exemplar beside its beginning with a gap between them.
@@ -97,7 +98,7 @@ impl Catalogue {
         let scale = Scale { unit_mm, height_mm: size.y };
         let joins = (0..pieces.len()).map(|from| joins_from(&pieces, from, scale, weights)).collect();
         let descriptors = pieces.iter().map(|p| p.descriptor.clone()).collect();
-        Self { pieces, descriptors, joins, width_mm: size.x, height_mm: size.y }
+        Self { pieces, descriptors, joins, width_mm: size.x, height_mm: size.y, own_ends_only: false }
     }
 
     /// The pieces, in the exemplar's order.
@@ -118,6 +119,17 @@ impl Catalogue {
     /// The join from one piece to another, if it was kept.
     pub fn join(&self, from: usize, to: usize) -> Option<&Join> {
         self.joins[from].iter().find(|j| j.to == to)
+    }
+
+    /// The same catalogue for open runs that begin and end as the exemplar does.
+    pub fn with_own_ends_only(mut self) -> Self {
+        self.own_ends_only = true;
+        self
+    }
+
+    /// Whether open runs may only begin with the exemplar's first piece and end with its last.
+    pub fn has_own_ends_only(&self) -> bool {
+        self.own_ends_only
     }
 
     /// The width of the exemplar in millimetres.

@@ -16,6 +16,7 @@ mod index;
 mod motion;
 mod overlay;
 mod region;
+mod split;
 mod tolerances;
 mod touch;
 

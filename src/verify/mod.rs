@@ -24,6 +24,7 @@ mod plain;
 mod shells;
 mod stl;
 mod svg;
+mod tiling;
 mod walls;
 
 pub use check::{Expected, Mismatch};
@@ -33,3 +34,4 @@ pub use narrowest::{Narrowest, Widths, min_feature, min_gap, widths};
 pub use shells::{Shell, StlFault, StlFaultKind, StlReport};
 pub use stl::read_stl;
 pub use svg::{SvgFault, SvgReport, read_svg};
+pub use tiling::{Tiling, TilingFault, tiling};
