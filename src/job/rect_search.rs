@@ -45,6 +45,8 @@ const RISE_FACTOR: f64 = 200.0;
 /// A second pass that costs no more than so many jumps for each height of a row is good enough: the mirror image is
 /// not tried. Less, and searches take longer; more, and rows are joined that were better mirrored.
 const GOOD_ROW: f64 = 5.0;
+/// So many places are tried at which a tile's strip is split.
+const SPLITS: usize = 3;
 /// The most ways that are tried. More, and a refusal takes longer than anyone waits for it.
 const MOST_ATTEMPTS: usize = 12;
 /// Rows may be pressed or stretched sideways by this much to fill the width: as a band along its length.
@@ -200,7 +202,19 @@ impl Search<'_, '_> {
     /// The cheapest second pass over a strip that comes out right. The mirror image doubles the pieces, so it is
     /// left alone where the strip follows itself well enough.
     fn over_strip(&mut self, strip: &Strip, goal: Goal, exemplar: &Exemplar) -> Option<(Way, Made)> {
-        let mut ways: Vec<Way> = self.way(strip, goal, false, exemplar).into_iter().collect();
+        let splits = if self.job.tile { SPLITS } else { 1 };
+        (0..splits).find_map(|split| self.over_split(strip, split, goal, exemplar))
+    }
+
+    /// The same for one place where a tile's strip is split.
+    fn over_split(
+        &mut self,
+        strip: &Strip,
+        split: usize,
+        goal: Goal,
+        exemplar: &Exemplar,
+    ) -> Option<(Way, Made)> {
+        let mut ways: Vec<Way> = self.way(strip, split, goal, false, exemplar).into_iter().collect();
         let rows = self.job.size.height_mm() / strip.band.report.width_mm;
         let is_good = |way: &Way| way.plan.cost <= GOOD_ROW * way.job.options.weights.jump.max(1.0) * rows;
         if let Some(at) = ways.iter().position(is_good)
@@ -208,7 +222,7 @@ impl Search<'_, '_> {
         {
             return Some((ways.swap_remove(at), second));
         }
-        ways.extend(self.way(strip, goal, true, exemplar));
+        ways.extend(self.way(strip, split, goal, true, exemplar));
         // Cheapest first, and in the order in which they were tried.
         ways.sort_by(|a, b| a.plan.cost.total_cmp(&b.plan.cost).then(a.attempt.cmp(&b.attempt)));
         ways.retain(|way| self.attempts[way.attempt].outcome == Attempt::PLANNED);
@@ -229,7 +243,7 @@ impl Search<'_, '_> {
             |region: &Region| self.clock.time(Stage::Slice, || slice_region(job, exemplar.clone(), region));
         let mut cut = slice(exemplar.region())?;
         if self.job.tile {
-            cut = slice(&opened(exemplar.region(), None, &cut.slicing.cuts)?)?;
+            cut = slice(&opened(exemplar.region(), None, &cut.slicing.cuts, 0)?)?;
             join_own_copies(&mut cut, false);
         }
         cut.sides = Sides::Filled;
@@ -243,7 +257,14 @@ impl Search<'_, '_> {
     }
 
     /// A second pass over a strip, if there is a plan for it.
-    fn way(&mut self, strip: &Strip, goal: Goal, mirrored: bool, exemplar: &Exemplar) -> Option<Way> {
+    fn way(
+        &mut self,
+        strip: &Strip,
+        split: usize,
+        goal: Goal,
+        mirrored: bool,
+        exemplar: &Exemplar,
+    ) -> Option<Way> {
         let mut options = self.job.band.options.clone();
         options.along = CurveSpec::Line { length_mm: self.job.size.height_mm() };
         options.goal = goal;
@@ -251,7 +272,7 @@ impl Search<'_, '_> {
         options.weights.rise *= RISE_FACTOR;
         let job = BandJob { options, tolerances: self.job.band.tolerances, variety: self.job.band.variety };
         let attempt = self.attempts.len();
-        match self.rows(&job, strip, mirrored, exemplar) {
+        match self.rows(&job, strip, split, mirrored, exemplar) {
             Ok((cut, plan, planned)) => {
                 self.attempts.push(Attempt::second(&strip.band, mirrored, Ok(&plan)));
                 Some(Way { job, cut, plan, planned, mirrored, attempt })
@@ -269,6 +290,7 @@ impl Search<'_, '_> {
         &mut self,
         job: &BandJob,
         strip: &Strip,
+        split: usize,
         mirrored: bool,
         exemplar: &Exemplar,
     ) -> Result<(Cut, Plan, Topology), JobError> {
@@ -281,7 +303,7 @@ impl Search<'_, '_> {
         if self.job.tile {
             cut = slice(&standing)?;
             clear_sides(&mut cut);
-            cut = slice(&opened(&standing, image.as_ref(), &cut.slicing.cuts)?)?;
+            cut = slice(&opened(&standing, image.as_ref(), &cut.slicing.cuts, split)?)?;
             join_own_copies(&mut cut, true);
         } else {
             let sheet: Vec<&Region> = std::iter::once(&standing).chain(&image).collect();

@@ -19,6 +19,8 @@ use crate::reeb;
 
 /// The gap between parts of an exemplar that are set side by side, as a part of its longer side.
 const GAP: f64 = 0.01;
+/// The middle part of an exemplar, in which it is split if it can be.
+const MIDDLE: f64 = 0.6;
 /// A crossing this close to a side, as a part of the exemplar's longer side, touches it.
 const TOUCH: f64 = 1e-6;
 /// Costs weigh positions in this part of the longer side (see [`CostWeights`]).
@@ -40,23 +42,29 @@ pub(super) fn side_by_side(regions: &[&Region]) -> Region {
     Region::from_contours(grid, contours).expect("regions that stand apart do not meet")
 }
 
-/// `region` split along the cut of `cuts` through the fewest strands, with its parts in each other's place and
-/// `between` them if given.
+/// `region` split along one of `cuts`, with its parts in each other's place and `between` them if given. `choice` 0 is
+/// the cut through the fewest strands in the middle of the region: nearer to its ends there are only tips, which a
+/// split would set free. 1 is the next best, and so on.
 ///
 /// # Errors
-/// [`JobError::Refused`] when no cut crosses ink.
+/// [`JobError::Refused`] when there is no such cut.
 pub(super) fn opened(
     region: &Region,
     between: Option<&Region>,
     cuts: &[reeb::Cut],
+    choice: usize,
 ) -> Result<Region, JobError> {
+    let (low, high) = region.bounds_mm().unwrap_or_default();
+    let (middle, reach) = ((low.x + high.x) / 2.0, MIDDLE * (high.x - low.x) / 2.0);
+    let is_outside = |cut: &reeb::Cut| (region.grid().mm(cut.x) - middle).abs() > reach;
     let mut cuts: Vec<&reeb::Cut> = cuts.iter().filter(|cut| cut.portals() > 0).collect();
     // Of those with as many strands, the one whose thinnest is thickest.
     cuts.sort_by(|a, b| {
         let thickest = b.narrowest_portal_mm().total_cmp(&a.narrowest_portal_mm());
-        a.portals().cmp(&b.portals()).then(thickest).then(a.x.cmp(&b.x))
+        let middle = is_outside(a).cmp(&is_outside(b));
+        middle.then(a.portals().cmp(&b.portals())).then(thickest).then(a.x.cmp(&b.x))
     });
-    let [left, right] = cuts.iter().find_map(|cut| region.split_at(cut.x)).ok_or_else(|| {
+    let [left, right] = cuts.iter().skip(choice).find_map(|cut| region.split_at(cut.x)).ok_or_else(|| {
         JobError::Refused("a tile joins its copies where the exemplar is cut, and no cut crosses its ink; try --slicing uniform:T, or leave out --tile".to_owned())
     })?;
     let parts: Vec<&Region> = [Some(&right), between, Some(&left)].into_iter().flatten().collect();
