@@ -44,7 +44,10 @@ const JUMP_FACTOR: f64 = 10.0;
 const RISE_FACTOR: f64 = 200.0;
 /// A second pass that costs no more than so many jumps for each height of a row is good enough: the mirror image is
 /// not tried. Less, and searches take longer; more, and rows are joined that were better mirrored.
-const GOOD_ROW: f64 = 5.0;
+const GOOD_ROW: f64 = 3.0;
+/// Successors that are weighed of each row where the mirror image stands beside the strip. A row's own reflection is
+/// among the cheapest; more make the search longer and the pattern no better.
+const MIRRORED_SUCCESSORS: usize = 6;
 /// So many places are tried at which a tile's strip is split.
 const SPLITS: usize = 3;
 /// The most ways that are tried. More, and a refusal takes longer than anyone waits for it.
@@ -270,6 +273,9 @@ impl Search<'_, '_> {
         options.goal = goal;
         options.weights.jump *= JUMP_FACTOR;
         options.weights.rise *= RISE_FACTOR;
+        if mirrored {
+            options.weights.successors = options.weights.successors.min(MIRRORED_SUCCESSORS);
+        }
         let job = BandJob { options, tolerances: self.job.band.tolerances, variety: self.job.band.variety };
         let attempt = self.attempts.len();
         match self.rows(&job, strip, split, mirrored, exemplar) {
