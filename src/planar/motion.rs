@@ -39,7 +39,9 @@ mod tests {
         ) {
             let paths: Vec<Vec<GridPoint>> = boxes
                 .iter()
-                .map(|&(x, y, w, h)| [(x, y), (x + w, y), (x + w, y + h), (x, y + h)].map(|(x, y)| GridPoint::new(x, y)).to_vec())
+                .map(|&(x, y, w, h)| [(x, y), (x + w, y), (x + w, y + h), (x, y + h)]
+                        .map(|(x, y)| GridPoint::new(x * 1_000_000, y * 1_000_000))
+                        .to_vec())
                 .collect();
             let region = Region::fill(Grid::for_extent(100.0).unwrap(), &paths, FillRule::EvenOdd);
             prop_assume!(!region.is_empty());

@@ -203,7 +203,7 @@ mod tests {
     #[test]
     fn sides_that_differ_are_named() {
         let found = tiling(&tile(&[(0, 40, 100, 20), (90, 50, 10, 30), (30, 0, 30, 80)]));
-        assert!(matches!(found, Err(TilingFault::Side { opposite: "left", .. })), "{found:?}");
+        assert!(matches!(found, Err(TilingFault::Side { opposite: "right", .. })), "{found:?}");
         assert_eq!(tiling(&Region::empty(Grid::for_extent(1.0).unwrap())), Err(TilingFault::Empty));
     }
 }
