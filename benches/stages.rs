@@ -13,7 +13,7 @@ use glam::DVec2;
 use openwork::domain::{BandMap, CurveSpec, PlanarCurve};
 use openwork::exemplar::{Exemplar, Limits, ReadOptions};
 use openwork::fabricate::snapped_to_f32;
-use openwork::fit::{FitOptions, Outline};
+use openwork::fit::{FitOptions, Outline, Sides, StitchMethod};
 use openwork::job::{Band, BandBuilder, Output, Plan, PlanOptions, plan};
 use openwork::pieces::{Catalogue, CostWeights};
 use openwork::planar::{Contour, Grid, Region, Tolerances};
@@ -90,7 +90,14 @@ fn solve(catalogue: &Catalogue, shape: Shape, length_mm: f64) -> Plan {
 }
 
 fn fit(catalogue: &Catalogue, plan: &Plan, length_mm: f64) -> Outline {
-    let options = FitOptions { length_mm, height_mm: HEIGHT_MM, is_ring: true, chord_mm: 0.125 * CHORD_MM };
+    let options = FitOptions {
+        length_mm,
+        height_mm: HEIGHT_MM,
+        is_ring: true,
+        chord_mm: 0.125 * CHORD_MM,
+        stitch: StitchMethod::default(),
+        sides: Sides::Free,
+    };
     Outline::new(catalogue, &plan.sequence, &options).expect("a plan is a run of the catalogue")
 }
 

@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
 use glam::DVec2;
-use openwork::fit::{FitOptions, Outline, OutlineContour};
+use openwork::fit::{FitOptions, Outline, OutlineContour, Sides, StitchMethod};
 use openwork::pieces::{Catalogue, CostWeights};
 use openwork::planar::{Contour, FillRule, Grid, GridPoint, Region, Tolerances};
 use openwork::reeb::{Cut, ReebGraph, Slicing, SlicingRule};
@@ -234,12 +234,13 @@ proptest! {
 
     // Bending and linking keeps every count of a line, and of a ring on a circle.
     #[test]
-    fn the_warp_never_changes_the_counts(
+    fn stitching_never_changes_the_counts(
         sketch in exemplars(),
         rule in rules(),
         choices in prop::collection::vec(any::<u16>(), 1..14),
         is_ring in any::<bool>(),
         stretch in 0.7f64..1.3,
+        stitch in prop::sample::select(vec![StitchMethod::Warp, StitchMethod::Lri]),
     ) {
         let region = sketch.region();
         let Some(cuts) = cuts(&region, rule) else { return Ok(()) };
@@ -249,7 +250,7 @@ proptest! {
         let length_mm = natural_mm * stretch;
         // On a circle the height has to be small against the radius.
         let height_mm = if is_ring { 0.2 * length_mm / TAU } else { catalogue.height_mm() };
-        let options = FitOptions { length_mm, height_mm, is_ring, chord_mm: 1e-3 };
+        let options = FitOptions { length_mm, height_mm, is_ring, chord_mm: 1e-3, stitch, sides: Sides::Free };
         let outline = Outline::new(&catalogue, &sequence, &options).unwrap();
         let topology = predicted(&catalogue, &sequence, is_ring);
         let winds = outline.contours.iter().any(|c| c.winding != 0);

@@ -19,8 +19,8 @@ const ROOMS: [(&str, &[&str]); 14] = [
     ("topology", &[]),
     ("pieces", &["planar", "reeb", "topology"]),
     ("solver", &["topology"]),
-    // Neither the curve nor the grid: outlines are band coordinates.
-    ("fit", &["pieces"]),
+    // Not the curve: outlines are band coordinates. The grid only judges them.
+    ("fit", &["planar", "pieces"]),
     ("domain", &["planar"]),
     ("fabricate", &["planar"]),
     // A solid is all that a writer knows of how shapes came to be.
@@ -58,10 +58,11 @@ const OWED: [(&str, &str); 3] = [
 ];
 
 /// Libraries that only these files or folders may name.
-const LIBRARIES: [(&str, &[&str]); 12] = [
+const LIBRARIES: [(&str, &[&str]); 13] = [
     ("i_overlay", &["src/planar/overlay.rs", "src/fabricate/caps.rs"]),
     ("i_triangle", &["src/fabricate/caps.rs"]),
-    ("spade", &["src/verify"]),
+    ("spade", &["src/verify", "src/fit/links.rs"]),
+    ("faer", &["src/fit/least_squares.rs"]),
     ("petgraph", &["src/reeb"]),
     ("usvg", &["src/exemplar", "src/verify", "src/analysis/overlay.rs"]),
     ("resvg", &["src/export/png.rs", "src/analysis/overlay.rs"]),

@@ -9,7 +9,7 @@ use openwork::pieces::{Catalogue, CostWeights};
 use openwork::planar::{FillRule, Grid, GridPoint, Region, Tolerances};
 use openwork::reeb::{ReebGraph, Slicing, SlicingRule};
 use openwork::solver::{Problem, Refusal, Step, Unsolved, explain, solve};
-use openwork::topology::{Descriptor, Goal, Shape, Topology};
+use openwork::topology::{Descriptor, Goal, Shape, Topology, Wanted};
 use proptest::prelude::*;
 
 /// A catalogue in whole numbers.
@@ -36,6 +36,8 @@ struct Request {
 const PATIENCE: usize = 120_000;
 /// A label limit that no small case needs, though the short search that comes first may.
 const ENOUGH: usize = 20_000;
+/// More than a label takes.
+const LABEL_BYTES: usize = 200;
 /// Lengths beyond the window at which refusals are checked.
 const LONGEST: u32 = 12;
 
@@ -54,7 +56,7 @@ fn problem<'a>(pieces: &'a Pieces, request: &Request) -> Problem<'a> {
         window: request.window.0..=request.window.1,
         drift_limit: request.drift_limit,
         variety: None,
-        label_limit: request.label_limit,
+        memory_limit: request.label_limit * LABEL_BYTES,
     }
 }
 
@@ -151,7 +153,7 @@ fn check(pieces: &Pieces, request: &Request) -> Result<bool, TestCaseError> {
             }
             Err(Unsolved::Infeasible) => {
                 prop_assert_eq!(least, None, "{:?}", goal);
-                let problem = Problem { label_limit: 1_000_000, ..problem.clone() };
+                let problem = Problem { memory_limit: 1 << 28, ..problem.clone() };
                 let refusal = explain(&problem, goal, LONGEST);
                 check_refusal(&problem, goal, &all, refusal)?;
             }
@@ -173,12 +175,12 @@ fn check_refusal(
     let in_window: Vec<&Made> = all.iter().filter(|m| problem.window.contains(&m.length)).collect();
     let in_band: Vec<&Made> = in_window.iter().filter(|m| m.is_in_band).copied().collect();
     let with = |goal: Goal| in_band.iter().filter(move |m| goal.admits(m.topology));
-    let is_nearest = |found: Option<u32>, wanted: Option<u32>, counts: BTreeSet<u32>| {
+    let is_nearest = |found: Option<u32>, wanted: Option<Wanted>, counts: BTreeSet<u32>| {
         let wanted = wanted.expect("a count that is refused was asked for");
-        prop_assert!(!counts.contains(&wanted), "{} can be had", wanted);
-        let least = counts.iter().map(|c| c.abs_diff(wanted)).min();
+        prop_assert!(!counts.iter().any(|&n| wanted.contains(n)), "{} can be had", wanted);
+        let least = counts.iter().map(|&n| wanted.distance(n)).min();
         let is_true = found.is_none_or(|f| counts.contains(&f));
-        prop_assert!(is_true && found.map(|f| f.abs_diff(wanted)) == least, "{:?} of {:?}", found, counts);
+        prop_assert!(is_true && found.map(|f| wanted.distance(f)) == least, "{:?} of {:?}", found, counts);
         Ok(())
     };
     match refusal {
@@ -217,8 +219,10 @@ fn check_refusal(
 }
 
 fn goals() -> impl Strategy<Value = Vec<Goal>> {
-    let count = || prop_oneof![3 => Just(None), 2 => Just(Some(1)), 3 => (0u32..4).prop_map(Some)];
-    let holes = || prop_oneof![3 => Just(None), 2 => Just(Some(0)), 3 => (0u32..4).prop_map(Some)];
+    let range = || (0u32..4, prop_oneof![3 => Just(0u32), 2 => 1u32..3]);
+    let wanted = || range().prop_map(|(least, more)| Wanted::between(least, least + more));
+    let count = || prop_oneof![3 => Just(None), 2 => Just(Some(Wanted::exactly(1))), 3 => wanted()];
+    let holes = || prop_oneof![3 => Just(None), 2 => Just(Some(Wanted::exactly(0))), 3 => wanted()];
     let goal = (count(), holes(), prop::bool::weighted(0.15));
     prop::collection::vec(
         goal.prop_map(|(components, holes, closed_pattern)| Goal { components, holes, closed_pattern }),

@@ -17,7 +17,7 @@ use thiserror::Error;
 use crate::exemplar::Exemplar;
 use crate::pieces::{Catalogue, CostWeights, CostWeightsError, Piece};
 use crate::planar::{Region, Tolerances};
-use crate::reeb::{Cut, ReebGraph, Slicing, SlicingError, SlicingRule, persistence::persistence};
+use crate::reeb::{Cut, KeptRange, ReebGraph, Slicing, SlicingError, SlicingRule, persistence::persistence};
 
 /// The version of the JSON form; it changes when a field is renamed, removed or gets another meaning.
 pub const SCHEMA_VERSION: u32 = 1;
@@ -44,6 +44,8 @@ pub struct Analysis {
     pub slicing: SlicingUsed,
     /// Where strands begin, end, split and merge, from left to right.
     pub critical_points: Vec<CriticalPointFound>,
+    /// Ranges that no cut may divide, from the left end of the ink, as they were asked for.
+    pub kept_mm: Vec<[f64; 2]>,
     /// The cuts, from left to right.
     pub cuts: Vec<CutFound>,
     /// Cuts that were left out as they pass through ink thinner than the minimum feature.
@@ -119,7 +121,8 @@ pub struct CutLeftOut {
 pub struct PieceFound {
     /// Its number, from 0, as in the sequences of other reports.
     pub index: usize,
-    /// Where it begins, from the left end of the ink.
+    /// Where it begins, from the left end of the ink; the first one begins before it, by the blank that keeps
+    /// apart what is joined at the ends of the exemplar.
     pub x_mm: f64,
     /// Its width.
     pub width_mm: f64,
@@ -170,12 +173,33 @@ impl Analysis {
         tolerances: &Tolerances,
         weights: &CostWeights,
     ) -> Result<Self, AnalysisError> {
+        Self::keeping(exemplar, rule, &[], tolerances, weights)
+    }
+
+    /// As [`Self::new`], without a cut inside the ranges of `kept`.
+    ///
+    /// # Errors
+    /// [`AnalysisError`] for parameters and ranges out of range, and when the minimum feature or the ranges leave
+    /// no cut.
+    pub fn keeping(
+        exemplar: &Exemplar,
+        rule: Option<SlicingRule>,
+        kept: &[KeptRange],
+        tolerances: &Tolerances,
+        weights: &CostWeights,
+    ) -> Result<Self, AnalysisError> {
         weights.validate()?;
-        let region = exemplar.region();
+        // What a band leaves out as well.
+        let (region, specks) = exemplar.region().without_specks(tolerances.chord_mm().powi(2));
+        let region = &region;
+        let mut notes = exemplar.notes().to_vec();
+        if !specks.is_empty() {
+            notes.push(format!("{} speck(s) too small for the chord error are left out", specks.len()));
+        }
         let (low, high) = region.bounds_mm().unwrap_or_default();
         let rule = rule.unwrap_or_else(|| SlicingRule::reeb_for_width(high.x - low.x));
         let reeb = ReebGraph::new(region);
-        let Slicing { cuts, dropped, .. } = Slicing::new(region, &reeb, rule, tolerances)?;
+        let Slicing { cuts, dropped, .. } = Slicing::keeping(region, &reeb, rule, kept, tolerances)?;
         let catalogue = Catalogue::new(region, &cuts, weights);
         let slicing = match rule {
             SlicingRule::Reeb { persistence_mm } => SlicingUsed::Reeb { persistence_mm },
@@ -183,7 +207,7 @@ impl Analysis {
         };
         let dropped = dropped
             .iter()
-            .map(|d| CutLeftOut { x_mm: rounded(d.x_mm - low.x), narrowest_portal_mm: rounded(d.portal_mm) });
+            .map(|d| CutLeftOut { x_mm: rounded(d.x_mm), narrowest_portal_mm: rounded(d.portal_mm) });
         let pieces = catalogue.pieces().iter().enumerate();
         Ok(Self {
             schema_version: SCHEMA_VERSION,
@@ -195,10 +219,11 @@ impl Analysis {
             area_mm2: rounded(region.area_mm2()),
             slicing,
             critical_points: critical_points(region, &reeb, slicing),
+            kept_mm: kept.iter().map(|k| [rounded(k.from_mm), rounded(k.to_mm)]).collect(),
             cuts: cuts.iter().map(|cut| CutFound::new(region, cut)).collect(),
             dropped_cuts: dropped.collect(),
             pieces: pieces.map(|(i, piece)| PieceFound::new(&catalogue, i, piece)).collect(),
-            notes: exemplar.notes().to_vec(),
+            notes,
             region: region.clone(),
         })
     }
@@ -263,7 +288,7 @@ impl PieceFound {
         let descriptor = &piece.descriptor;
         Self {
             index,
-            x_mm: rounded(piece.x_mm),
+            x_mm: rounded(piece.x_mm - catalogue.pieces()[0].blanks_mm().0),
             width_mm: rounded(piece.width_mm),
             descriptor: DescriptorFound {
                 left: descriptor.left().to_vec(),

@@ -16,6 +16,9 @@ use crate::export::ExportError;
 
 const PAPER: &str = "#f7f4ee";
 const STRIPE: &str = "#ece4d5";
+/// Kept ranges, behind the ink and on a bracket above and below it.
+const KEPT: &str = "#cfe3d3";
+const KEPT_LINE: &str = "#3f8a5d";
 const INK: &str = "#34435f";
 const CUT: &str = "#c2603f";
 const TEXT: &str = "#4a4238";
@@ -59,6 +62,7 @@ pub(super) fn svg(analysis: &Analysis) -> String {
     lettering::write(&mut svg, &title(analysis), (MARGIN, MARGIN + TITLE_HEIGHT), TITLE_HEIGHT, TEXT);
     let drawing = Drawing { analysis, layout: &layout };
     drawing.stripes(&mut svg);
+    drawing.kept(&mut svg);
     drawing.numbers(&mut svg);
     drawing.ink(&mut svg);
     drawing.cuts(&mut svg);
@@ -186,6 +190,21 @@ impl Drawing<'_> {
         }
     }
 
+    fn kept(&self, svg: &mut String) {
+        let l = self.layout;
+        let (top, bottom) = (l.top - OVERHANG, l.bottom + OVERHANG);
+        for &[from, to] in &self.analysis.kept_mm {
+            let (x, width) = (l.x(from), (to - from) * l.scale);
+            let _ = writeln!(
+                svg,
+                "<rect x=\"{x:.2}\" y=\"{top:.2}\" width=\"{width:.2}\" height=\"{:.2}\" fill=\"{KEPT}\"/>\n\
+                 <path d=\"M{x:.2} {top:.2}h{width:.2}M{x:.2} {bottom:.2}h{width:.2}\" stroke=\"{KEPT_LINE}\" \
+                 stroke-width=\"2\"/>",
+                bottom - top
+            );
+        }
+    }
+
     fn numbers(&self, svg: &mut String) {
         let foot = self.layout.top - OVERHANG;
         for number in &self.layout.numbers {
@@ -296,6 +315,7 @@ enum LegendItem {
     Small,
     Cut,
     Dropped,
+    Kept,
     Portal,
 }
 
@@ -306,6 +326,7 @@ impl LegendItem {
             Self::Small => "event too small to cut beside",
             Self::Cut => "cut",
             Self::Dropped => "cut left out, ink too thin",
+            Self::Kept => "kept whole",
             Self::Portal => "portal: colour is the component in the piece on that side",
         }
     }
@@ -315,7 +336,7 @@ impl LegendItem {
             Self::Event(_) => 2.0 * SIGN,
             Self::Small => 2.0 * SMALL_SIGN,
             Self::Portal => 8.0,
-            Self::Cut | Self::Dropped => 14.0,
+            Self::Cut | Self::Dropped | Self::Kept => 14.0,
         }
     }
 
@@ -329,6 +350,16 @@ impl LegendItem {
             Self::Small => sign(svg, "split", (x + SMALL_SIGN, y), SMALL_SIGN),
             Self::Cut => line(CUT_STYLE),
             Self::Dropped => line(DROPPED_STYLE),
+            Self::Kept => {
+                let _ = writeln!(
+                    svg,
+                    "<rect x=\"{x:.2}\" y=\"{:.2}\" width=\"14\" height=\"10\" fill=\"{KEPT}\"/>\n\
+                     <path d=\"M{x:.2} {:.2}h14M{x:.2} {:.2}h14\" stroke=\"{KEPT_LINE}\" stroke-width=\"2\"/>",
+                    y - 5.0,
+                    y - 5.0,
+                    y + 5.0
+                );
+            }
             Self::Portal => {
                 bar(svg, x, (y - 5.0, y + 5.0), 4.0, 0);
                 bar(svg, x + 4.0, (y - 5.0, y + 5.0), 4.0, 1);
@@ -346,6 +377,9 @@ fn legend(analysis: &Analysis, width: f64) -> (Vec<(LegendItem, f64, usize)>, us
     items.push(LegendItem::Cut);
     if !analysis.dropped_cuts.is_empty() {
         items.push(LegendItem::Dropped);
+    }
+    if !analysis.kept_mm.is_empty() {
+        items.push(LegendItem::Kept);
     }
     items.push(LegendItem::Portal);
     let (mut x, mut row) = (MARGIN, 0);

@@ -35,6 +35,9 @@ impl fmt::Display for Analysis {
             }
             SlicingUsed::Uniform { .. } => writeln!(f, "\n{cuts}, equally spaced")?,
         }
+        for [from, to] in &self.kept_mm {
+            writeln!(f, "kept whole from {from:.2} to {to:.2} mm")?;
+        }
         for cut in &self.dropped_cuts {
             writeln!(
                 f,

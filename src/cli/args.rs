@@ -6,7 +6,7 @@ use clap::{Args, Parser, Subcommand};
 
 use super::values;
 use crate::domain::{CurveSpec, RectSize};
-use crate::job::SlicingChoice;
+use crate::job::{KeptRange, SlicingChoice, StitchMethod};
 
 /// Ornament that can be made: new pattern from one SVG ornament, with exactly the components and holes you ask
 /// for, written as a part and counted again on the file.
@@ -93,7 +93,9 @@ Examples:
   One piece that a nozzle of 0.5 mm can print:
     openwork verify sign.svg --components 1 --holes 0 --min-feature 0.5mm
   What a solid has, as JSON:
-    openwork verify sign.stl --json";
+    openwork verify sign.stl --json
+  Whether a report proves the counts of the file that was written with it:
+    openwork verify --certificate bracelet.json bracelet.svg";
 
 #[derive(Debug, Args)]
 pub(super) struct BandArguments {
@@ -133,15 +135,22 @@ pub(super) struct PatternArguments {
     /// height, in a rectangle at most a quarter of it]
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(super) width: Option<f64>,
-    /// Exactly so many connected components [default: free]
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
-    pub(super) components: Option<u32>,
-    /// Exactly so many holes; the inside of a closed ring is one [default: free]
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
-    pub(super) holes: Option<u32>,
+    /// So many connected components: a number, a range with both ends as 2..5, or any
+    #[arg(long, value_name = "N", value_parser = values::wanted, default_value = "any", hide_default_value = true, allow_negative_numbers = true)]
+    pub(super) components: values::Count,
+    /// So many holes: a number, a range or any; the inside of a closed ring is one
+    #[arg(long, value_name = "M", value_parser = values::wanted, default_value = "any", hide_default_value = true, allow_negative_numbers = true)]
+    pub(super) holes: values::Count,
     /// Where the exemplar is cut: reeb, reeb:LENGTH or uniform:T
     #[arg(long, value_name = "RULE", value_parser = values::slicing, default_value = "reeb")]
     pub(super) slicing: SlicingChoice,
+    /// Range of the exemplar that is never cut, as 10mm..24mm from its left edge at the size it has in the band
+    /// (what analyze shows with the same --width); may be repeated
+    #[arg(long, value_name = "X0..X1", value_parser = values::kept, allow_hyphen_values = true)]
+    pub(super) keep: Vec<KeptRange>,
+    /// Use every piece left for right as well
+    #[arg(long)]
+    pub(super) mirror: bool,
     /// Another seed may give another band near the optimum [default: the optimum]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(super) seed: Option<u64>,
@@ -154,6 +163,9 @@ pub(super) struct PatternArguments {
     /// Cost of a jump: more keeps longer runs of the exemplar, 0 allows short cycles
     #[arg(long, value_name = "LAMBDA", default_value_t = 1.0, allow_negative_numbers = true)]
     pub(super) jump_cost: f64,
+    /// How pieces are bent to meet: warp, or lri (linear rotation-invariant deformation)
+    #[arg(long, value_name = "METHOD", value_parser = values::stitch, default_value_t)]
+    pub(super) stitch: StitchMethod,
     /// Thickness of the solid
     #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "2mm", allow_hyphen_values = true)]
     pub(super) thickness: f64,
@@ -193,6 +205,9 @@ pub(super) struct AnalyzeArguments {
     /// Where the exemplar is cut: reeb, reeb:LENGTH or uniform:T
     #[arg(long, value_name = "RULE", value_parser = values::slicing, default_value = "reeb")]
     pub(super) slicing: SlicingChoice,
+    /// Range of the exemplar that is never cut, as 10mm..24mm from its left edge at this --width; may be repeated
+    #[arg(long, value_name = "X0..X1", value_parser = values::kept, allow_hyphen_values = true)]
+    pub(super) keep: Vec<KeptRange>,
     #[command(flatten)]
     pub(super) tolerances: ToleranceArguments,
     /// An overlay to write: .svg or .png; may be repeated; - is SVG on standard output
@@ -231,6 +246,9 @@ pub(super) struct ExtrudeArguments {
 pub(super) struct VerifyArguments {
     /// The file (.svg or .stl)
     pub(super) file: PathBuf,
+    /// The report that was written with the file: replay its certificate, step by step
+    #[arg(long, value_name = "REPORT.json")]
+    pub(super) certificate: Option<PathBuf>,
     /// Components (SVG) or shells (STL) that it must have
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(super) components: Option<usize>,

@@ -14,11 +14,15 @@ use super::rect;
 use crate::analysis::{Analysis, AnalysisError};
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
 use crate::export;
-use crate::job::{BandBuilder, BandReport, Format, JobError, Output, SlicingChoice, Target, extrude};
+use crate::job::{
+    BandBuilder, BandReport, Format, JobError, Output, READ_SHARE, SlicingChoice, Target, extrude,
+};
 use crate::pieces::CostWeights;
 use crate::planar::{Tolerances, TolerancesError};
 use crate::reeb::{SlicingError, SlicingRule};
-use crate::verify::{self, Expected, Mismatch, Narrowest, VerifyError};
+use crate::verify::{
+    self, CertificateError, CertificateReport, Counted, Expected, Mismatch, Narrowest, VerifyError,
+};
 
 /// Whatever ends the program with a message.
 #[derive(Debug, Error)]
@@ -31,6 +35,10 @@ pub(super) enum CliError {
     Unjudged { file: String, error: VerifyError },
     #[error("{file}: {mismatch}")]
     Mismatch { file: String, mismatch: Mismatch },
+    #[error("{file}: {error}")]
+    Uncertified { file: String, error: CertificateError },
+    #[error("{file}: {report}")]
+    Refuted { file: String, report: Box<CertificateReport> },
     #[error("{file}: the name does not say what it is; verify reads .svg and .stl")]
     UnknownKind { file: String },
     #[error(transparent)]
@@ -49,8 +57,12 @@ impl CliError {
     pub(super) fn exit_code(&self) -> u8 {
         match self {
             Self::Job(job) => job.exit_code(),
-            Self::Unreadable { .. } | Self::Unjudged { .. } | Self::UnknownKind { .. } | Self::Stdout(_) => 2,
-            Self::Mismatch { .. } => 4,
+            Self::Unreadable { .. }
+            | Self::Unjudged { .. }
+            | Self::Uncertified { .. }
+            | Self::UnknownKind { .. }
+            | Self::Stdout(_) => 2,
+            Self::Mismatch { .. } | Self::Refuted { .. } => 4,
             Self::Analysis(AnalysisError::Slicing(SlicingError::TooThin { .. })) => 3,
             Self::Analysis(_) => 2,
         }
@@ -128,20 +140,25 @@ fn builder(arguments: &BandArguments) -> BandBuilder {
 pub(super) fn with_pattern(builder: BandBuilder, a: &PatternArguments) -> BandBuilder {
     let mut builder = builder
         .slicing(a.slicing)
+        .mirror(a.mirror)
         .variety(a.variety)
         .alpha(a.alpha)
         .jump_cost(a.jump_cost)
+        .stitch(a.stitch)
         .thickness_mm(a.thickness)
         .chord_mm(a.tolerances.chord)
         .min_feature_mm(a.tolerances.min_feature.unwrap_or(0.0))
         .min_gap_mm(a.tolerances.min_gap.unwrap_or(0.0));
+    for &range in &a.keep {
+        builder = builder.keep(range);
+    }
     if let Some(width) = a.width {
         builder = builder.width_mm(width);
     }
-    if let Some(components) = a.components {
+    if let Some(components) = a.components.0 {
         builder = builder.components(components);
     }
-    if let Some(holes) = a.holes {
+    if let Some(holes) = a.holes.0 {
         builder = builder.holes(holes);
     }
     if let Some(seed) = a.seed {
@@ -197,7 +214,8 @@ fn run_analyze(arguments: &AnalyzeArguments) -> Result<ExitCode, CliError> {
     }
     let tolerances = tolerances(&arguments.tolerances)?;
     let options = ReadOptions {
-        chord_mm: tolerances.chord_mm(),
+        // As a band reads it, so that cuts and numbers of pieces are the same.
+        chord_mm: tolerances.chord_mm() * READ_SHARE,
         target_height_mm: arguments.width,
         limits: Limits::default(),
     };
@@ -207,7 +225,7 @@ fn run_analyze(arguments: &AnalyzeArguments) -> Result<ExitCode, CliError> {
         SlicingChoice::Persistence(persistence_mm) => Some(SlicingRule::Reeb { persistence_mm }),
         SlicingChoice::Uniform(lines) => Some(SlicingRule::Uniform { lines }),
     };
-    let analysis = Analysis::new(&exemplar, rule, &tolerances, &CostWeights::default())?;
+    let analysis = Analysis::keeping(&exemplar, rule, &arguments.keep, &tolerances, &CostWeights::default())?;
     write_all(&outputs, |format| match format {
         Format::Png => analysis.overlay_png(OVERLAY_PIXELS).map_err(JobError::from),
         Format::Svg | Format::Stl => Ok(analysis.overlay_svg().into_bytes()),
@@ -282,14 +300,18 @@ fn run_verify(arguments: &VerifyArguments) -> Result<ExitCode, CliError> {
         min_feature_mm: tolerances.min_feature_mm(),
         min_gap_mm: tolerances.min_gap_mm(),
     };
-    let bytes =
-        std::fs::read(&arguments.file).map_err(|error| CliError::Unreadable { file: file.clone(), error })?;
+    let bytes = read(&arguments.file)?;
+    let certificate = match &arguments.certificate {
+        Some(path) => Some((path.as_path(), read(path)?)),
+        None => None,
+    };
+    let replayed = |counted| replay(certificate.as_ref(), &bytes, counted);
     let unjudged = |error| CliError::Unjudged { file: file.clone(), error };
     let extension = arguments.file.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
     let checked = match extension.as_str() {
         "svg" => {
             let report = verify::read_svg(&bytes, tolerances.chord_mm() / 4.0).map_err(unjudged)?;
-            print_report(arguments.json, &report)?;
+            print_verified(arguments, &report, replayed(Counted::Svg(&report))?)?;
             report.check(&expected)
         }
         "stl" if expected.min_feature_mm > 0.0 || expected.min_gap_mm > 0.0 => {
@@ -301,7 +323,7 @@ fn run_verify(arguments: &VerifyArguments) -> Result<ExitCode, CliError> {
         }
         "stl" => {
             let report = verify::read_stl(&bytes).map_err(unjudged)?;
-            print_report(arguments.json, &report)?;
+            print_verified(arguments, &report, replayed(Counted::Stl(&report))?)?;
             report.check(&expected)
         }
         _ => return Err(CliError::UnknownKind { file }),
@@ -310,8 +332,55 @@ fn run_verify(arguments: &VerifyArguments) -> Result<ExitCode, CliError> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn print_report<R: serde::Serialize + std::fmt::Display>(json: bool, report: &R) -> Result<(), CliError> {
-    if json { print_json(report) } else { print(&format!("{report}\n")) }
+fn read(path: &Path) -> Result<Vec<u8>, CliError> {
+    let file = path.display().to_string();
+    std::fs::read(path).map_err(|error| CliError::Unreadable { file, error })
+}
+
+/// Replays the certificate, if there is one.
+fn replay(
+    certificate: Option<&(&Path, Vec<u8>)>,
+    file: &[u8],
+    counted: Counted<'_>,
+) -> Result<Option<CertificateReport>, CliError> {
+    let replayed = certificate.map(|(path, report)| {
+        let name = path.display().to_string();
+        verify::replay_certificate(report, file, counted)
+            .map_err(|error| CliError::Uncertified { file: name, error })
+    });
+    replayed.transpose()
+}
+
+/// What was found in a file, and what its certificate came to.
+#[derive(serde::Serialize)]
+struct Verified<'a, R> {
+    #[serde(flatten)]
+    file: &'a R,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    certificate: Option<&'a CertificateReport>,
+}
+
+/// Prints what was found.
+///
+/// # Errors
+/// [`CliError::Refuted`] when the certificate does not hold, after that was printed.
+fn print_verified<R: serde::Serialize + std::fmt::Display>(
+    arguments: &VerifyArguments,
+    file: &R,
+    certificate: Option<CertificateReport>,
+) -> Result<(), CliError> {
+    if arguments.json {
+        print_json(&Verified { file, certificate: certificate.as_ref() })?;
+    } else {
+        print(&format!("{file}\n"))?;
+    }
+    match (certificate, &arguments.certificate) {
+        (Some(report), Some(path)) if !report.holds => {
+            Err(CliError::Refuted { file: path.display().to_string(), report: Box::new(report) })
+        }
+        (Some(report), _) if !arguments.json => print(&format!("{report}\n")),
+        _ => Ok(()),
+    }
 }
 
 fn print_json(report: &impl serde::Serialize) -> Result<(), CliError> {

@@ -1,7 +1,7 @@
 //! Values of options as they are typed.
 
 use crate::domain::{CurveSpec, RectSize, parse_length_mm};
-use crate::job::SlicingChoice;
+use crate::job::{KeptRange, SlicingChoice, StitchMethod, Wanted, WantedError};
 
 /// A length in millimetres: `12mm`, `1.2cm`, `0.5in`, `34pt`, `45px` or `12`.
 pub(super) fn length(text: &str) -> Result<f64, String> {
@@ -16,6 +16,21 @@ pub(super) fn curve(text: &str) -> Result<CurveSpec, String> {
 /// A size: `120x80mm`.
 pub(super) fn size(text: &str) -> Result<RectSize, String> {
     text.parse::<RectSize>().map_err(|e| e.to_string())
+}
+
+/// How many of something: `None` when any number will do. (A name of its own, as the parser of arguments gives
+/// `Option` a meaning.)
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Count(pub(super) Option<Wanted>);
+
+/// `3`, `2..5` or `any`.
+pub(super) fn wanted(text: &str) -> Result<Count, String> {
+    match text {
+        "any" => Ok(Count(None)),
+        text => {
+            text.parse().map(|wanted| Count(Some(wanted))).map_err(|e: WantedError| format!("{e}, or any"))
+        }
+    }
 }
 
 /// `reeb`, `reeb:0.2mm` or `uniform:12`.
@@ -33,15 +48,43 @@ pub(super) fn slicing(text: &str) -> Result<SlicingChoice, String> {
     }
 }
 
+/// A range of the exemplar: `10mm..24mm`.
+pub(super) fn kept(text: &str) -> Result<KeptRange, String> {
+    let Some((from, to)) = text.split_once("..") else {
+        return Err(format!("'{text}' is no range; write two lengths and two dots, such as 10mm..24mm"));
+    };
+    let (from_mm, to_mm) = (length(from)?, length(to)?);
+    if from_mm >= to_mm {
+        return Err(format!("'{text}' ends before it begins; give the left end first"));
+    }
+    Ok(KeptRange { from_mm, to_mm })
+}
+
+/// `warp` or `lri`.
+pub(super) fn stitch(text: &str) -> Result<StitchMethod, String> {
+    text.parse()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn slicing_is_read_and_taught() {
+    fn ranges_are_two_lengths_in_order() {
+        assert_eq!(kept("1.5..2.25cm"), Ok(KeptRange { from_mm: 1.5, to_mm: 22.5 }));
+        assert_eq!(kept("1cm..12mm"), Ok(KeptRange { from_mm: 10.0, to_mm: 12.0 }));
+        for wrong in ["10mm", "5mm..3mm", "4..4", "..3mm", "1mm..x", "1mm...."] {
+            assert!(kept(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn choices_are_read_and_taught() {
         assert_eq!(slicing("reeb"), Ok(SlicingChoice::Reeb));
         assert_eq!(slicing("reeb:1cm"), Ok(SlicingChoice::Persistence(10.0)));
         assert_eq!(slicing("uniform:12"), Ok(SlicingChoice::Uniform(12)));
+        assert_eq!((stitch("warp"), stitch("lri")), (Ok(StitchMethod::Warp), Ok(StitchMethod::Lri)));
+        assert!(stitch("glue").unwrap_err().contains("use warp"));
         for wrong in ["uniform", "uniform:0", "uniform:x", "rebe", ""] {
             assert!(slicing(wrong).unwrap_err().contains("use reeb"), "{wrong}");
         }

@@ -13,22 +13,8 @@
 use glam::DVec2;
 
 use super::interpolant::Monotone;
-use crate::pieces::Endpoint;
-
-/// Where the endpoints of one side have to go, top to bottom.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SideTarget {
-    /// The height to reach, in millimetres above the middle of the band.
-    pub y_mm: f64,
-    /// The unit tangent to have there, pointing right.
-    pub tangent: DVec2,
-}
-
-/// A deformation of one piece that takes its endpoints to their targets.
-pub trait Stitch {
-    /// The image of a point of the piece; x in 0..=width, and both in millimetres.
-    fn map(&self, p: DVec2) -> DVec2;
-}
+use super::stitch::{Bent, SideTarget, Stitch, Targets};
+use crate::pieces::{Endpoint, Piece};
 
 /// Slopes are matched up to this steepness (76 degrees).
 const STEEPEST: f64 = 4.0;
@@ -58,20 +44,16 @@ struct Side {
 }
 
 impl StripWarp {
-    /// The warp of a strip of `width_mm` whose sides' endpoints go to the targets. A side without endpoints
-    /// is moved by `offset_mm`.
-    pub fn new(
-        width_mm: f64,
-        (left, left_targets): (&[Endpoint], &[SideTarget]),
-        (right, right_targets): (&[Endpoint], &[SideTarget]),
-        offset_mm: f64,
-    ) -> Self {
-        Self::held(width_mm, (left, left_targets), (right, right_targets), offset_mm, None)
+    /// The warp of the strip of `piece` that takes its endpoints to `targets`.
+    pub fn new(piece: &Piece, targets: &Targets<'_>) -> Self {
+        let sides = ((&piece.left[..], targets.left), (&piece.right[..], targets.right));
+        Self::of_strip(piece.width_mm, sides.0, sides.1, targets.offset_mm, targets.held_mm)
     }
 
-    /// The same, and points at `held_mm` above and below the middle stay where they are. Targets must lie between
-    /// these heights; the offset is that of a side without endpoints, and not used if heights are held.
-    pub fn held(
+    /// The warp of a strip of `width_mm` whose sides' endpoints go to the targets. A side without endpoints
+    /// is moved by `offset_mm`, unless heights are held: then points at `held_mm` above and below the middle stay
+    /// where they are, and targets must lie between.
+    fn of_strip(
         width_mm: f64,
         (left, left_targets): (&[Endpoint], &[SideTarget]),
         (right, right_targets): (&[Endpoint], &[SideTarget]),
@@ -164,12 +146,59 @@ fn faded(changes: &[(f64, f64)], fade: f64, most: f64) -> Monotone {
 }
 
 impl Stitch for StripWarp {
-    fn map(&self, p: DVec2) -> DVec2 {
+    fn bend(&self, piece: &Piece, chord_mm: f64) -> Bent {
+        let chains = piece.chains.iter().map(|chain| self.polyline(&chain.points, chord_mm));
+        let loops = piece.loops.iter().map(|points| {
+            let closed: Vec<DVec2> = points.iter().chain(points.first()).copied().collect();
+            let mut bent = self.polyline(&closed, chord_mm);
+            bent.pop();
+            bent
+        });
+        Bent { chains: chains.collect(), loops: loops.collect() }
+    }
+}
+
+/// Halvings of an edge: a thousandth of an edge is as fine as any warp needs.
+const MAX_DEPTH: u32 = 10;
+
+impl StripWarp {
+    /// The image of a point of the piece; x in 0..=width, and both in millimetres.
+    pub fn map(&self, p: DVec2) -> DVec2 {
         let t = (p.x / self.width_mm).clamp(0.0, 1.0);
         let s = t * t * (3.0 - 2.0 * t);
         let blended = (1.0 - s) * self.left.heights.value(p.y) + s * self.right.heights.value(p.y);
         let tangents = self.left.bump(p.x, p.y) - self.right.bump(self.width_mm - p.x, p.y);
         DVec2::new(p.x, blended + tangents)
+    }
+
+    /// The image of a polyline, with points added where the image of an edge bends away from its chord.
+    fn polyline(&self, points: &[DVec2], chord_mm: f64) -> Vec<DVec2> {
+        let mut bent = vec![self.map(points[0])];
+        for w in points.windows(2) {
+            let from = bent[bent.len() - 1];
+            self.edge((w[0], from), (w[1], self.map(w[1])), chord_mm, MAX_DEPTH, &mut bent);
+        }
+        bent
+    }
+
+    fn edge(
+        &self,
+        from: (DVec2, DVec2),
+        to: (DVec2, DVec2),
+        chord_mm: f64,
+        depth: u32,
+        bent: &mut Vec<DVec2>,
+    ) {
+        // A bend may hide from the middle, so the quarters are looked at too.
+        let strays = |t: f64| self.map(from.0.lerp(to.0, t)).distance(from.1.lerp(to.1, t)) > chord_mm;
+        if depth > 0 && (strays(0.5) || strays(0.25) || strays(0.75)) {
+            let middle = from.0.midpoint(to.0);
+            let middle = (middle, self.map(middle));
+            self.edge(from, middle, chord_mm, depth - 1, bent);
+            self.edge(middle, to, chord_mm, depth - 1, bent);
+        } else {
+            bent.push(to.1);
+        }
     }
 }
 
@@ -200,7 +229,7 @@ mod tests {
     proptest! {
         #[test]
         fn vertical_lines_stay_in_order(left in ends(), right in ends(), width in 0.2f64..20.0, x in 0.0f64..1.0) {
-            let warp = StripWarp::new(width, (&left.0, &left.1), (&right.0, &right.1), 0.5);
+            let warp = StripWarp::of_strip(width, (&left.0, &left.1), (&right.0, &right.1), 0.5, None);
             let mut before = f64::NEG_INFINITY;
             for i in 0..=2000 {
                 let y = -15.0 + 0.015 * f64::from(i);
@@ -212,7 +241,7 @@ mod tests {
 
         #[test]
         fn held_heights_stay(left in ends(), right in ends(), width in 0.2f64..20.0, x in 0.0f64..1.0) {
-            let warp = StripWarp::held(width, (&left.0, &left.1), (&right.0, &right.1), 0.0, Some(30.0));
+            let warp = StripWarp::of_strip(width, (&left.0, &left.1), (&right.0, &right.1), 0.0, Some(30.0));
             let mut before = f64::NEG_INFINITY;
             for i in 0..=2000 {
                 let y = -30.0 + 0.03 * f64::from(i);
@@ -228,7 +257,7 @@ mod tests {
         #[test]
         fn endpoints_and_slopes_arrive(left in ends(), right in ends()) {
             let width = 10.0;
-            let warp = StripWarp::new(width, (&left.0, &left.1), (&right.0, &right.1), 0.0);
+            let warp = StripWarp::of_strip(width, (&left.0, &left.1), (&right.0, &right.1), 0.0, None);
             for (x, inward, (ends, targets)) in [(0.0, 1.0, &left), (width, -1.0, &right)] {
                 let side = if x == 0.0 { &warp.left } else { &warp.right };
                 let reach = side.reach_mm;

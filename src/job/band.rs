@@ -2,32 +2,34 @@
 
 use std::path::Path;
 
-use glam::DVec2;
-use sha2::{Digest, Sha256};
-
 use super::builder::{BandJob, SlicingChoice};
+use super::certificate::{Certificate, FileDigest, sha256};
 use super::error::JobError;
 use super::extrude::{check_stl, name};
 use super::output::{Format, Output, Pending, Target, persist};
 use super::part::{Part, PartError};
 use super::plan::{Plan, PlanError, PlanOptions, plan};
 use super::refusal;
-use super::report::{BandReport, InputReport, SeamReport, StageTime};
+use super::report::{
+    BandReport, DroppedCutReport, FallbackReport, InputReport, SeamReport, StageTime, StitchReport,
+};
 use super::stage::{Clock, Stage};
 use crate::domain::{BandMap, CurveSpec, PlanarCurve};
 use crate::exemplar::{Exemplar, Limits, ReadOptions, read_path};
 use crate::export::{self, SvgDocument, SvgOptions};
 use crate::fabricate;
-use crate::fit::{FitOptions, Outline, Sides};
+use crate::fit::{FitOptions, Outline, Prepared, Sides, StitchMethod};
 use crate::pieces::{Catalogue, CostWeights};
 use crate::planar::Region;
 use crate::reeb::{ReebGraph, Slicing, SlicingRule};
 use crate::solver::autocorrelation;
 use crate::topology::{Shape, Topology};
 use crate::verify::{self, Expected, Mismatch, Narrowest, SvgReport};
+use glam::DVec2;
 
-/// The chord error is shared out: flattening the exemplar, bending, mapping, and fitting curves for the SVG.
-const READ_SHARE: f64 = 0.25;
+/// The chord error is shared out: this part is for flattening the exemplar, the others for bending, for mapping and
+/// for fitting curves to the SVG.
+pub const READ_SHARE: f64 = 0.25;
 const FIT_SHARE: f64 = 0.125;
 const MAP_SHARE: f64 = 0.125;
 const SVG_SHARE: f64 = 0.5;
@@ -63,6 +65,7 @@ pub(super) struct Cut {
     pub(super) slicing: Slicing,
     pub(super) catalogue: Catalogue,
     pub(super) weights: CostWeights,
+    mirror: bool,
     pub(super) height_mm: f64,
     /// What becomes of the sides of the band.
     pub(super) sides: Sides,
@@ -76,18 +79,20 @@ impl Cut {
         &self.region
     }
 
+    /// Makes the catalogue again, after cuts were left out or weights were changed.
+    pub(super) fn weigh(&mut self, own_ends_only: bool) {
+        let catalogue = catalogue(&self.region, &self.slicing, &self.weights, self.mirror);
+        self.catalogue = if own_ends_only { catalogue.with_own_ends_only() } else { catalogue };
+    }
+
     /// Weighs every join instead of the cheapest few; `false` if that changes nothing.
     fn admit_all_successors(&mut self) -> bool {
-        let pieces = self.catalogue.pieces().len();
+        let pieces = self.catalogue.originals();
         if self.weights.successors >= pieces {
             return false;
         }
         self.weights.successors = pieces;
-        let own_ends_only = self.catalogue.has_own_ends_only();
-        self.catalogue = Catalogue::new(&self.region, &self.slicing.cuts, &self.weights);
-        if own_ends_only {
-            self.catalogue = self.catalogue.clone().with_own_ends_only();
-        }
+        self.weigh(self.catalogue.has_own_ends_only());
         true
     }
 }
@@ -187,10 +192,16 @@ impl Band {
             error => error,
         })?;
         let mut pending = Vec::new();
+        let mut digests = Vec::new();
+        let mut digest = |output: &Output, bytes: &[u8]| {
+            let file = name(output.target()).display().to_string();
+            digests.push(FileDigest { file, format: output.format().name(), sha256: sha256(bytes) });
+        };
         for output in outputs {
             let item = match output.format() {
                 Format::Svg => {
                     report.svg_segments = Some([drawing.lines, drawing.cubics]);
+                    digest(output, drawing.text.as_bytes());
                     let item = Pending::new(output.target(), drawing.text.clone().into_bytes())?;
                     if clock.time(Stage::Verify, || item.read_again())? != drawing.text.as_bytes() {
                         let source = std::io::Error::other("the file differs from what was written to it");
@@ -201,6 +212,7 @@ impl Band {
                 }
                 Format::Stl => {
                     let bytes = clock.time(Stage::Stl, || self.stl())?;
+                    digest(output, &bytes);
                     let item = Pending::new(output.target(), bytes)?;
                     let solid = clock.time(Stage::Verify, || check_stl(output.target(), &item, &expected))?;
                     report.triangles = Some(solid.triangles);
@@ -212,6 +224,7 @@ impl Band {
                 Format::Png => {
                     let picture =
                         clock.time(Stage::Png, || export::png(&self.part.region, export::DEFAULT_PIXELS))?;
+                    digest(output, &picture);
                     Pending::new(output.target(), picture)?
                 }
             };
@@ -223,6 +236,7 @@ impl Band {
                 narrowest.width_mm
             ));
         }
+        report.certificate.seal([found.components, found.holes], digests);
         report.components = found.components;
         report.holes = found.holes;
         report.min_feature = found.min_feature;
@@ -328,8 +342,7 @@ fn read_curve(
 }
 
 fn sha256_of(file: &Path) -> String {
-    let bytes = std::fs::read(file).unwrap_or_default();
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+    sha256(&std::fs::read(file).unwrap_or_default())
 }
 
 fn slice(job: &BandJob, exemplar: Exemplar) -> Result<Cut, JobError> {
@@ -355,11 +368,17 @@ pub(super) fn slice_region(job: &BandJob, exemplar: Exemplar, region: &Region) -
         SlicingChoice::Persistence(persistence_mm) => SlicingRule::Reeb { persistence_mm },
         SlicingChoice::Uniform(lines) => SlicingRule::Uniform { lines },
     };
-    let slicing = Slicing::new(region, &ReebGraph::new(region), rule, &job.tolerances)?;
-    let weights = job.options.weights;
-    let catalogue = Catalogue::new(region, &slicing.cuts, &weights);
+    let reeb = ReebGraph::new(region);
+    let slicing = Slicing::keeping(region, &reeb, rule, &job.options.kept, &job.tolerances)?;
+    let (weights, mirror) = (job.options.weights, job.options.mirror);
+    let catalogue = catalogue(region, &slicing, &weights, mirror);
     let (region, height_mm) = (region.clone(), high.y - low.y);
-    Ok(Cut { region, slicing, catalogue, weights, height_mm, sides: Sides::Free, exemplar, specks })
+    Ok(Cut { region, slicing, catalogue, weights, mirror, height_mm, sides: Sides::Free, exemplar, specks })
+}
+
+fn catalogue(region: &Region, slicing: &Slicing, weights: &CostWeights, mirror: bool) -> Catalogue {
+    let new = if mirror { Catalogue::with_mirrored } else { Catalogue::new };
+    new(region, &slicing.cuts, weights)
 }
 
 /// The best sequence for `job` along the curve of `map`, and what it adds up to.
@@ -378,6 +397,7 @@ pub(super) fn plan_run(
         weights: options.weights,
         seed: options.seed,
         variety: job.variety,
+        memory_limit: job.memory_limit,
     };
     let mut planned = clock.time(Stage::Solve, || plan(&cut.catalogue, &plan_options));
     if matches!(planned, Err(PlanError::Refused { .. })) && cut.admit_all_successors() {
@@ -415,16 +435,25 @@ fn make_part(
     clock: &mut Clock<'_>,
 ) -> Result<(Part, Outline), JobError> {
     let mut last = None;
-    for share in CHORD_TRIES {
+    let mut prepared = Prepared::new();
+    // What no chord error can help is warped after all.
+    let methods: &[StitchMethod] = match job.options.stitch {
+        StitchMethod::Lri if cut.sides != Sides::Held => &[StitchMethod::Lri, StitchMethod::Warp],
+        _ => &[StitchMethod::Warp],
+    };
+    let tries = methods.iter().flat_map(|&stitch| CHORD_TRIES.map(|share| (stitch, share)));
+    for (stitch, share) in tries {
         let chord_mm = job.tolerances.chord_mm() * share;
         let fit = FitOptions {
             length_mm: map.curve().length_mm(),
             height_mm: cut.height_mm,
             is_ring: map.curve().is_closed(),
             chord_mm: chord_mm * FIT_SHARE,
+            stitch,
+            sides: cut.sides,
         };
         let outline = clock
-            .time(Stage::Fit, || Outline::with_sides(&cut.catalogue, &plan.sequence, &fit, cut.sides))?;
+            .time(Stage::Fit, || Outline::prepared(&cut.catalogue, &plan.sequence, &fit, &mut prepared))?;
         match clock.time(Stage::Map, || Part::new(&outline, map, planned, chord_mm * MAP_SHARE)) {
             Ok(part) => return Ok((part, outline)),
             Err(PartError::Job(error)) => return Err(error),
@@ -435,6 +464,23 @@ fn make_part(
         components: planned.components as usize,
         holes: planned.holes as usize,
         fault: last.expect("a try either returns or leaves a fault"),
+    })
+}
+
+/// Cuts named in a note; a report lists all.
+const DROPPED_SHOWN: usize = 5;
+
+/// What to say of cuts through ink that is too thin.
+fn dropped_note(slicing: &Slicing) -> Option<String> {
+    let dropped = &slicing.dropped;
+    let shown = dropped.iter().take(DROPPED_SHOWN).map(|d| format!("{:.2} ({:.3})", d.x_mm, d.portal_mm));
+    let shown = shown.collect::<Vec<_>>().join(", ");
+    let more = if dropped.len() > DROPPED_SHOWN { ", ..." } else { "" };
+    (!dropped.is_empty()).then(|| {
+        format!(
+            "{} cut(s) were left out, as they pass through ink thinner than --min-feature: at x (portal) {shown}{more} mm",
+            dropped.len()
+        )
     })
 }
 
@@ -466,11 +512,21 @@ fn describe(
             first.y
         ));
     }
-    if !cut.slicing.dropped.is_empty() {
+    if outline.method != options.stitch && cut.sides != Sides::Held {
+        notes.push(
+            "the whole band was stitched by --stitch warp, as rotation-invariant deformation made contours meet between its pieces"
+                .to_owned(),
+        );
+    }
+    if !outline.fallbacks.is_empty() {
         notes.push(format!(
-            "{} cut(s) were left out, as they pass through ink thinner than --min-feature",
-            cut.slicing.dropped.len()
+            "{} of {} pieces were warped, as rotation-invariant deformation would have broken them",
+            outline.fallbacks.len(),
+            plan.sequence.len()
         ));
+    }
+    if let Some(note) = dropped_note(&cut.slicing) {
+        notes.push(note);
     }
     if let (SlicingChoice::Uniform(lines), 1..) = (options.slicing, cut.slicing.missed) {
         notes.push(format!(
@@ -513,8 +569,8 @@ fn describe(
         along: options.along.to_string(),
         curve,
         seed: options.seed,
-        wanted_components: options.goal.components,
-        wanted_holes: options.goal.holes,
+        wanted_components: options.goal.components.map(|w| [w.least(), w.most()]),
+        wanted_holes: options.goal.holes.map(|w| [w.least(), w.most()]),
         wanted_closed_pattern: options.goal.closed_pattern,
         components: planned.components as usize,
         holes: planned.holes as usize,
@@ -523,8 +579,21 @@ fn describe(
         width_mm: cut.height_mm,
         thickness_mm: options.thickness_mm,
         chord_mm: job.tolerances.chord_mm(),
-        pieces_in_exemplar: cut.catalogue.pieces().len(),
+        pieces_in_exemplar: cut.catalogue.originals(),
         pieces_in_result: plan.sequence.len(),
+        mirror: cut.mirror,
+        mirrored_pieces_in_result: plan
+            .sequence
+            .iter()
+            .filter(|&&p| cut.catalogue.origin(p).is_mirrored)
+            .count(),
+        kept_mm: options.kept.iter().map(|k| [k.from_mm, k.to_mm]).collect(),
+        dropped_cuts: cut
+            .slicing
+            .dropped
+            .iter()
+            .map(|d| DroppedCutReport { x_mm: d.x_mm, portal_mm: d.portal_mm })
+            .collect(),
         sequence: plan.sequence.clone(),
         cost: plan.cost,
         optimal: plan.gap.map(|gap| gap == 0.0),
@@ -541,6 +610,7 @@ fn describe(
             worst_angle_before_deg: worst(|s| s.before_deg),
             worst_angle_after_deg: worst(|s| s.after_deg),
         },
+        stitching: stitching(outline),
         search_labels: plan.labels,
         search_states: plan.states,
         min_feature: None,
@@ -554,7 +624,27 @@ fn describe(
         genus: None,
         volume_mm3: None,
         files: Vec::new(),
+        certificate: Certificate::new(
+            &cut.catalogue,
+            &plan.sequence,
+            if map.curve().is_closed() { Shape::Ring } else { Shape::Open },
+            options.goal,
+            planned,
+        ),
         notes,
         times,
+    }
+}
+
+fn stitching(outline: &Outline) -> StitchReport {
+    let fallbacks = outline.fallbacks.iter().map(|f| FallbackReport {
+        place: f.place,
+        piece: f.piece,
+        fault: f.fault.to_string(),
+    });
+    StitchReport {
+        method: outline.method.to_string(),
+        fallbacks: fallbacks.collect(),
+        fallback_seams: (0..outline.seams.len()).filter(|&i| outline.seams[i].fell_back).collect(),
     }
 }

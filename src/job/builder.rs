@@ -5,12 +5,15 @@ use std::path::{Path, PathBuf};
 use super::band::Band;
 use super::error::JobError;
 use super::output::{Output, Target};
+use super::plan::DEFAULT_MEMORY_LIMIT;
 use super::stage::Stage;
 use crate::domain::CurveSpec;
+use crate::fit::StitchMethod;
 use crate::pieces::CostWeights;
 use crate::planar::Tolerances;
+use crate::reeb::KeptRange;
 use crate::solver::Variety;
-use crate::topology::Goal;
+use crate::topology::{Goal, Wanted};
 
 /// How the exemplar is sliced.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -32,11 +35,14 @@ pub struct BandBuilder {
     pub(super) width_mm: Option<f64>,
     pub(super) goal: Goal,
     pub(super) slicing: SlicingChoice,
+    pub(super) kept: Vec<KeptRange>,
+    pub(super) mirror: bool,
     pub(super) seed: Option<u64>,
     pub(super) beta: f64,
     pub(super) weights: CostWeights,
     pub(super) thickness_mm: f64,
     pub(super) round_mm: Option<f64>,
+    pub(super) stitch: StitchMethod,
     chord_mm: f64,
     min_feature_mm: f64,
     min_gap_mm: f64,
@@ -54,11 +60,14 @@ impl BandBuilder {
             width_mm: None,
             goal: Goal::default(),
             slicing: SlicingChoice::default(),
+            kept: Vec::new(),
+            mirror: false,
             seed: None,
             beta: 0.0,
             weights: CostWeights::default(),
             thickness_mm: DEFAULT_THICKNESS_MM,
             round_mm: None,
+            stitch: StitchMethod::default(),
             chord_mm: Tolerances::DEFAULT_CHORD_MM,
             min_feature_mm: 0.0,
             min_gap_mm: 0.0,
@@ -71,15 +80,15 @@ impl BandBuilder {
         self
     }
 
-    /// The number of connected components; left out, it is free.
-    pub fn components(mut self, components: u32) -> Self {
-        self.goal.components = Some(components);
+    /// The number of connected components, or a range of numbers; left out, it is free.
+    pub fn components(mut self, components: impl Into<Wanted>) -> Self {
+        self.goal.components = Some(components.into());
         self
     }
 
-    /// The number of holes; left out, it is free. The inside of a closed ring counts as one.
-    pub fn holes(mut self, holes: u32) -> Self {
-        self.goal.holes = Some(holes);
+    /// The number of holes, or a range of numbers; left out, it is free. The inside of a closed ring counts as one.
+    pub fn holes(mut self, holes: impl Into<Wanted>) -> Self {
+        self.goal.holes = Some(holes.into());
         self
     }
 
@@ -92,6 +101,19 @@ impl BandBuilder {
     /// How the exemplar is sliced.
     pub fn slicing(mut self, slicing: SlicingChoice) -> Self {
         self.slicing = slicing;
+        self
+    }
+
+    /// A range of the exemplar that is not cut, in millimetres from its left edge at the size that it has in the
+    /// band; may be called again.
+    pub fn keep(mut self, range: KeptRange) -> Self {
+        self.kept.push(range);
+        self
+    }
+
+    /// Whether every piece may be used left for right as well.
+    pub fn mirror(mut self, mirror: bool) -> Self {
+        self.mirror = mirror;
         self
     }
 
@@ -149,6 +171,12 @@ impl BandBuilder {
         self
     }
 
+    /// How pieces are bent to meet.
+    pub fn stitch(mut self, stitch: StitchMethod) -> Self {
+        self.stitch = stitch;
+        self
+    }
+
     /// Checks every option by its name.
     ///
     /// # Errors
@@ -163,14 +191,14 @@ impl BandBuilder {
         if !(0.0..=1e6).contains(&self.beta) {
             return Err(out_of_range("--variety", self.beta, "it must be from 0 to 1000000"));
         }
-        if self.goal.components == Some(0) {
+        if self.goal.components.is_some_and(|wanted| wanted.most() == 0) {
             return Err(JobError::Option {
                 option: "--components",
                 found: "0 components is no band".to_owned(),
                 wanted: "ask for 1 or more, or leave it out".to_owned(),
             });
         }
-        if self.goal.closed_pattern && self.goal.holes == Some(0) {
+        if self.goal.closed_pattern && self.goal.holes.is_some_and(|wanted| wanted.most() == 0) {
             return Err(JobError::Option {
                 option: "--closed-pattern",
                 found: "a pattern that goes all the way round has a hole, its inside, but --holes 0 was asked for"
@@ -179,7 +207,7 @@ impl BandBuilder {
             });
         }
         let variety = (self.beta > 0.0).then_some(Variety { beta: self.beta });
-        Ok(BandJob { options: self, tolerances, variety })
+        Ok(BandJob { options: self, tolerances, variety, memory_limit: DEFAULT_MEMORY_LIMIT })
     }
 }
 
@@ -200,6 +228,8 @@ pub struct BandJob {
     pub(super) options: BandBuilder,
     pub(super) tolerances: Tolerances,
     pub(super) variety: Option<Variety>,
+    /// The memory that the search may take, in bytes.
+    pub(super) memory_limit: usize,
 }
 
 impl BandJob {

@@ -24,8 +24,10 @@
 
 mod band;
 mod builder;
+mod certificate;
 mod error;
 mod extrude;
+mod json;
 mod output;
 mod part;
 mod plan;
@@ -38,8 +40,13 @@ mod refusal;
 mod report;
 mod stage;
 
-pub use band::Band;
+pub use crate::reeb::KeptRange;
+pub use band::{Band, READ_SHARE};
 pub use builder::{BandBuilder, BandJob, SlicingChoice};
+pub use certificate::{
+    BridgeStep, Certificate, Closing, Connections, FileDigest, PieceDescriptor, ResultCounts, Steps,
+    WantedCounts,
+};
 pub use error::{JobError, OutlineFault};
 pub use extrude::{ExtrudeReport, extrude};
 pub use output::{Format, Output, Target};
@@ -47,5 +54,10 @@ pub use plan::{Plan, PlanError, PlanOptions, plan};
 pub use rect::Rect;
 pub use rect_builder::{RectBuilder, RectJob};
 pub use rect_report::{Attempt, DirectionReport, RectReport};
-pub use report::{BandReport, InputReport, SeamReport, StageTime};
+pub use report::{
+    BandReport, DroppedCutReport, FallbackReport, InputReport, SeamReport, StageTime, StitchReport,
+};
 pub use stage::Stage;
+
+pub use crate::fit::StitchMethod;
+pub use crate::topology::{Wanted, WantedError};

@@ -17,6 +17,17 @@ pub enum Format {
     Png,
 }
 
+impl Format {
+    /// Its name, which is also the extension of such files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Svg => "svg",
+            Self::Stl => "stl",
+            Self::Png => "png",
+        }
+    }
+}
+
 /// Where an output goes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Target {

@@ -1,6 +1,6 @@
 //! From a catalogue in millimetres to a search problem in whole numbers, and back to a plan.
 
-use crate::pieces::{Catalogue, CostWeights};
+use crate::pieces::{Catalogue, CostWeights, Piece};
 use crate::solver::{self, Cost, Problem, Refusal, Solution, Step, Unsolved, Variety};
 use crate::topology::{Goal, Shape};
 
@@ -22,6 +22,8 @@ pub struct PlanOptions {
     pub seed: Option<u64>,
     /// The penalty on repetition.
     pub variety: Option<Variety>,
+    /// The memory that the search may take, in bytes.
+    pub memory_limit: usize,
 }
 
 /// A sequence of pieces that meets the constraints.
@@ -64,9 +66,13 @@ pub enum PlanError {
 /// The first ε is the paper's (Zhou 2014 §3.5); it is widened until a sequence is found. Beyond the last, the
 /// stretching would show.
 pub(super) const EPSILONS: [f64; 4] = [0.05, 0.1, 0.2, 0.3];
-/// A bin as a part of the narrowest piece. Larger, and rounding to whole bins, at least one, would lengthen the
-/// narrow pieces and with them the band; smaller, and the search takes longer for a length no truer.
+/// The smallest bin, as a part of the narrowest piece: smaller, and the search takes longer for a length no truer.
 const BIN: f64 = 0.75;
+/// Each piece has at least one bin, so large bins lengthen the narrow pieces. They may not lengthen the exemplar by
+/// more than this part, a fifth of the first ε.
+const BIN_ERROR: f64 = 0.01;
+/// What bins grow by when larger ones are tried.
+const BIN_STEP: f64 = 1.2;
 /// The most bins in a band: beyond, bins grow and lengths are less true, which the report shows.
 const MOST_BINS: f64 = 400_000.0;
 /// Units of drift in the height of the band.
@@ -76,11 +82,8 @@ const DRIFT_UNITS: f64 = 64.0;
 const SEED_SPREAD: f64 = 2.0;
 /// The λ that this part is taken of when λ is smaller, so that a seed has an effect without λ too.
 const LEAST_SEEDED_JUMP: f64 = 0.1;
-/// The most labels of a search: tens of megabytes, and about a second.
-const LABEL_LIMIT: usize = 800_000;
-
-/// The same with variety, where each label carries the correlations of its whole run.
-const VARIETY_LABEL_LIMIT: usize = 20_000;
+/// The memory that a search may take when nothing else is asked for, in bytes.
+pub const DEFAULT_MEMORY_LIMIT: usize = 2 << 30;
 
 /// The best sequence of `catalogue` for `options`.
 ///
@@ -125,8 +128,24 @@ fn finish(catalogue: &Catalogue, options: &PlanOptions, solution: Solution, epsi
 }
 
 fn bin_mm(catalogue: &Catalogue, length_mm: f64) -> f64 {
-    let narrowest = catalogue.pieces().iter().map(|p| p.width_mm).fold(f64::INFINITY, f64::min);
-    (narrowest * BIN).max(length_mm / MOST_BINS)
+    let widths = || catalogue.pieces().iter().map(|p| p.width_mm);
+    let (narrowest, whole) = (widths().fold(f64::INFINITY, f64::min), widths().sum::<f64>());
+    let error = |bin_mm: f64| {
+        let bins: u32 = catalogue.pieces().iter().map(|p| bins(p, bin_mm)).sum();
+        (f64::from(bins) * bin_mm / whole - 1.0).abs()
+    };
+    let mean = whole / catalogue.pieces().len() as f64;
+    let mut bin_mm = narrowest * BIN;
+    while bin_mm * BIN_STEP < mean / 2.0 && error(bin_mm * BIN_STEP) <= BIN_ERROR {
+        bin_mm *= BIN_STEP;
+    }
+    bin_mm.max(length_mm / MOST_BINS)
+}
+
+/// The width of a piece in bins. Both of its ends are rounded, so that errors do not add up along the exemplar.
+fn bins(piece: &Piece, bin_mm: f64) -> u32 {
+    let whole = |mm: f64| (mm / bin_mm).round() as u32;
+    (whole(piece.x_mm + piece.width_mm) - whole(piece.x_mm)).max(1)
 }
 
 fn window(length_mm: f64, epsilon: f64, bin_mm: f64) -> Option<std::ops::RangeInclusive<u32>> {
@@ -137,14 +156,10 @@ fn window(length_mm: f64, epsilon: f64, bin_mm: f64) -> Option<std::ops::RangeIn
 
 fn problem<'a>(catalogue: &'a Catalogue, options: &PlanOptions, bin_mm: f64) -> Problem<'a> {
     let pieces = catalogue.pieces();
-    let last = pieces.len() - 1;
     let micro = |cost: f64| (cost * 1e6).round() as Cost;
-    // Both ends of each piece are rounded to bins, so that errors do not add up along the exemplar.
-    let bins = |mm: f64| (mm / bin_mm).round() as u32;
     // A piece that is longer than any run may be is as good as one that just does not fit.
-    let too_long = bins(options.length_mm * 2.0) + 2;
-    let widths =
-        pieces.iter().map(|p| (bins(p.x_mm + p.width_mm) - bins(p.x_mm)).clamp(1, too_long)).collect();
+    let too_long = (options.length_mm * 2.0 / bin_mm) as u32 + 2;
+    let widths = pieces.iter().map(|p| bins(p, bin_mm).min(too_long)).collect();
     let unit_mm = options.height_mm / DRIFT_UNITS;
     let seed_spread = SEED_SPREAD * options.weights.jump.max(LEAST_SEEDED_JUMP);
     let steps = catalogue
@@ -168,10 +183,14 @@ fn problem<'a>(catalogue: &'a Catalogue, options: &PlanOptions, bin_mm: f64) -> 
         true => Some(0),
         false => (!catalogue.has_own_ends_only()).then(|| micro(options.weights.jump)),
     };
-    let begin =
-        pieces.iter().enumerate().map(|(i, p)| if p.left.is_empty() { end_cost(i == 0) } else { None });
-    let end =
-        pieces.iter().enumerate().map(|(i, p)| if p.right.is_empty() { end_cost(i == last) } else { None });
+    let begin = pieces
+        .iter()
+        .enumerate()
+        .map(|(i, p)| if p.left.is_empty() { end_cost(catalogue.is_own_begin(i)) } else { None });
+    let end = pieces
+        .iter()
+        .enumerate()
+        .map(|(i, p)| if p.right.is_empty() { end_cost(catalogue.is_own_end(i)) } else { None });
     Problem {
         shape: options.shape,
         descriptors: catalogue.descriptors(),
@@ -182,7 +201,7 @@ fn problem<'a>(catalogue: &'a Catalogue, options: &PlanOptions, bin_mm: f64) -> 
         window: 0..=0,
         drift_limit: (DRIFT_UNITS / 2.0) as i32,
         variety: options.variety,
-        label_limit: if options.variety.is_some() { VARIETY_LABEL_LIMIT } else { LABEL_LIMIT },
+        memory_limit: options.memory_limit,
     }
 }
 

@@ -4,9 +4,12 @@ use serde::Serialize;
 
 use super::band::Band;
 use super::builder::BandJob;
+use super::certificate::Certificate;
 use super::error::JobError;
+use super::json;
 use super::plan::Plan;
-use super::report::{BandReport, InputReport, SeamReport, StageTime};
+use super::report::{BandReport, DroppedCutReport, InputReport, SeamReport, StageTime, StitchReport};
+use crate::topology::Wanted;
 use crate::verify::{Narrowest, Tiling};
 
 /// One of the two passes of a rectangle. Lengths are millimetres.
@@ -22,11 +25,16 @@ pub struct DirectionReport {
     pub holes: usize,
     /// Where the exemplar of the pass was cut, from its left on the grid that it was read on.
     pub cuts_mm: Vec<f64>,
+    /// Cuts left out because of the minimum feature.
+    pub dropped_cuts: Vec<DroppedCutReport>,
     /// Pieces of the exemplar of the pass.
     pub pieces_in_exemplar: usize,
     /// Pieces of the run.
     pub pieces_in_result: usize,
-    /// The pieces in order, by their number from 0; in the second pass rows, from the top.
+    /// Pieces of the run that are used left for right, in the second pass upside down.
+    pub mirrored_pieces_in_result: usize,
+    /// The pieces in order, by their number from 0; n + i is piece i of n, mirrored. In the second pass they are
+    /// rows, from the top.
     pub sequence: Vec<usize>,
     /// The cost of the sequence (Zhou 2014 §3.6.1, with jumps and rises).
     pub cost: f64,
@@ -44,6 +52,8 @@ pub struct DirectionReport {
     pub squash: f64,
     /// The seams.
     pub seams: SeamReport,
+    /// How the pieces were bent to meet at the seams.
+    pub stitching: StitchReport,
     /// Partial runs that the search made.
     pub search_labels: usize,
     /// States of the automaton that it met.
@@ -58,8 +68,10 @@ impl DirectionReport {
             components: band.components,
             holes: band.holes,
             cuts_mm,
+            dropped_cuts: band.dropped_cuts.clone(),
             pieces_in_exemplar: band.pieces_in_exemplar,
             pieces_in_result: band.pieces_in_result,
+            mirrored_pieces_in_result: band.mirrored_pieces_in_result,
             sequence: band.sequence.clone(),
             cost: band.cost,
             optimal: band.optimal,
@@ -69,6 +81,7 @@ impl DirectionReport {
             length_error_mm: band.length_error_mm,
             squash: band.squash,
             seams: band.seams,
+            stitching: band.stitching.clone(),
             search_labels: band.search_labels,
             search_states: band.search_states,
         }
@@ -103,8 +116,8 @@ impl Attempt {
         let options = &job.options;
         Self {
             row_mm: options.width_mm.unwrap_or_default(),
-            strip_components: options.goal.components,
-            strip_holes: options.goal.holes,
+            strip_components: options.goal.components.map(Wanted::most),
+            strip_holes: options.goal.holes.map(Wanted::most),
             strip_seed: options.seed,
             mirrored: None,
             cost: None,
@@ -138,14 +151,18 @@ pub struct RectReport {
     pub size_mm: [f64; 2],
     /// The seed, if one was given.
     pub seed: Option<u64>,
-    /// Components that were asked for.
-    pub wanted_components: Option<u32>,
-    /// Holes that were asked for.
-    pub wanted_holes: Option<u32>,
+    /// The least and the greatest number of components that were asked for.
+    pub wanted_components: Option<[u32; 2]>,
+    /// The least and the greatest number of holes that were asked for.
+    pub wanted_holes: Option<[u32; 2]>,
     /// Components of the written files.
     pub components: usize,
     /// Holes of the written files.
     pub holes: usize,
+    /// Whether pieces may be used left for right.
+    pub mirror: bool,
+    /// Ranges of the exemplar that were not cut, from its left edge at the size that it has in the rows.
+    pub kept_mm: Vec<[f64; 2]>,
     /// The thickness of the solid.
     pub thickness_mm: f64,
     /// The greatest distance between a curve and what stands for it.
@@ -184,6 +201,8 @@ pub struct RectReport {
     pub volume_mm3: Option<f64>,
     /// The files that were written.
     pub files: Vec<String>,
+    /// What proves the counts without trusting the search: of the second pass, whose pieces are rows.
+    pub certificate: Certificate,
     /// What the user may want to know.
     pub notes: Vec<String>,
     /// Time per stage.
@@ -203,15 +222,13 @@ impl RectReport {
         self.genus = found.genus;
         self.volume_mm3 = found.volume_mm3;
         self.files = found.files;
+        self.certificate = found.certificate;
         self.notes.extend(found.notes);
         self.times = found.times;
     }
 
-    /// The report as indented JSON, ending in a line break.
+    /// The report as indented JSON, arrays on one line, ending in a line break.
     pub fn to_json(&self) -> String {
-        let mut text =
-            serde_json::to_string_pretty(self).expect("a report has no maps with keys that are not text");
-        text.push('\n');
-        text
+        json::indented(self)
     }
 }

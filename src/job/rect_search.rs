@@ -26,7 +26,7 @@ use crate::domain::{BandMap, CurveSpec, PlanarCurve};
 use crate::exemplar::Exemplar;
 use crate::fit::Sides;
 use crate::planar::{GridPoint, Region, Tolerances};
-use crate::topology::{Goal, Topology};
+use crate::topology::{Goal, Topology, Wanted};
 use crate::verify::{self, Tiling};
 
 /// Where no height is asked for, rows are at most this part of the rectangle's height. Larger, and there are too
@@ -52,6 +52,11 @@ const MIRRORED_SUCCESSORS: usize = 6;
 const SPLITS: usize = 3;
 /// The most ways that are tried. More, and a refusal takes longer than anyone waits for it.
 const MOST_ATTEMPTS: usize = 12;
+/// The memory that the search for a strip and for its rows may take, in bytes: a way that has no sequence soon is
+/// given up for the next one.
+const STRIP_MEMORY_LIMIT: usize = 512 << 20;
+/// See [`STRIP_MEMORY_LIMIT`].
+const ROWS_MEMORY_LIMIT: usize = 256 << 20;
 /// Rows may be pressed or stretched sideways by this much to fill the width: as a band along its length.
 const STRETCH: std::ops::RangeInclusive<f64> = 0.7..=1.3;
 /// The first pass may use this part of the chord error, so that both stay within it.
@@ -139,7 +144,7 @@ fn heights(job: &RectJob, own: &Exemplar) -> Vec<f64> {
 fn goals(job: &RectJob) -> Vec<Goal> {
     let goal = job.band.options.goal;
     match goal.components {
-        None => vec![Goal { components: Some(1), ..goal }, goal],
+        None => vec![Goal { components: Some(Wanted::exactly(1)), ..goal }, goal],
         Some(_) => vec![goal],
     }
 }
@@ -155,7 +160,8 @@ impl Search<'_, '_> {
             tolerances.min_feature_mm(),
             tolerances.min_gap_mm(),
         )?;
-        let job = BandJob { options, tolerances, variety: self.job.band.variety };
+        let job =
+            BandJob { options, tolerances, variety: self.job.band.variety, memory_limit: STRIP_MEMORY_LIMIT };
         let exemplar = self.clock.time(Stage::Read, || read_exemplar(&job))?;
         let given = self.job.band.options.seed;
         let seeds: Vec<Option<u64>> = match given {
@@ -225,7 +231,9 @@ impl Search<'_, '_> {
         {
             return Some((ways.swap_remove(at), second));
         }
-        ways.extend(self.way(strip, split, goal, true, exemplar));
+        if !self.job.band.options.mirror {
+            ways.extend(self.way(strip, split, goal, true, exemplar));
+        }
         // Cheapest first, and in the order in which they were tried.
         ways.sort_by(|a, b| a.plan.cost.total_cmp(&b.plan.cost).then(a.attempt.cmp(&b.attempt)));
         ways.retain(|way| self.attempts[way.attempt].outcome == Attempt::PLANNED);
@@ -242,11 +250,15 @@ impl Search<'_, '_> {
         exemplar: &Exemplar,
         known: &[Strip],
     ) -> Result<Option<Strip>, JobError> {
-        let mut slice =
-            |region: &Region| self.clock.time(Stage::Slice, || slice_region(job, exemplar.clone(), region));
-        let mut cut = slice(exemplar.region())?;
+        let mut slice = |job: &BandJob, region: &Region| {
+            self.clock.time(Stage::Slice, || slice_region(job, exemplar.clone(), region))
+        };
+        let mut cut = slice(job, exemplar.region())?;
         if self.job.tile {
-            cut = slice(&opened(exemplar.region(), None, &cut.slicing.cuts, 0)?)?;
+            let (region, kept) = opened(exemplar.region(), None, &cut.slicing.cuts, 0, &job.options.kept)?;
+            let mut job = job.clone();
+            job.options.kept = kept;
+            cut = slice(&job, &region)?;
             join_own_copies(&mut cut, false);
         }
         cut.sides = Sides::Filled;
@@ -271,12 +283,14 @@ impl Search<'_, '_> {
         let mut options = self.job.band.options.clone();
         options.along = CurveSpec::Line { length_mm: self.job.size.height_mm() };
         options.goal = goal;
+        // What is kept whole are places of the exemplar, and these the strip has kept already.
+        options.kept.clear();
         options.weights.jump *= JUMP_FACTOR;
         options.weights.rise *= RISE_FACTOR;
         if mirrored {
             options.weights.successors = options.weights.successors.min(MIRRORED_SUCCESSORS);
         }
-        let job = BandJob { options, tolerances: self.job.band.tolerances, variety: self.job.band.variety };
+        let job = BandJob { options, memory_limit: ROWS_MEMORY_LIMIT, ..self.job.band.clone() };
         let attempt = self.attempts.len();
         match self.rows(&job, strip, split, mirrored, exemplar) {
             Ok((cut, plan, planned)) => {
@@ -309,7 +323,8 @@ impl Search<'_, '_> {
         if self.job.tile {
             cut = slice(&standing)?;
             clear_sides(&mut cut);
-            cut = slice(&opened(&standing, image.as_ref(), &cut.slicing.cuts, split)?)?;
+            let (region, _) = opened(&standing, image.as_ref(), &cut.slicing.cuts, split, &[])?;
+            cut = slice(&region)?;
             join_own_copies(&mut cut, true);
         } else {
             let sheet: Vec<&Region> = std::iter::once(&standing).chain(&image).collect();
@@ -377,9 +392,9 @@ impl Search<'_, '_> {
 
 /// The topologies that strips are asked for. The rows of a strip that hangs together do so too, mostly.
 fn first_goals(goal: Goal) -> Vec<Goal> {
-    let one = Goal { components: Some(1), ..Goal::default() };
+    let one = Goal { components: Some(Wanted::exactly(1)), ..Goal::default() };
     match goal.holes {
-        Some(_) => vec![one, Goal { holes: Some(0), ..one }, Goal::default()],
+        Some(_) => vec![one, Goal { holes: Some(Wanted::exactly(0)), ..one }, Goal::default()],
         None => vec![one, Goal::default()],
     }
 }

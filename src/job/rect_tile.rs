@@ -13,9 +13,9 @@ use glam::DVec2;
 use super::band::Cut;
 use super::error::JobError;
 use crate::fit::Sides;
-use crate::pieces::{Catalogue, CostWeights};
+use crate::pieces::CostWeights;
 use crate::planar::{GridPoint, Region};
-use crate::reeb;
+use crate::reeb::{self, KeptRange};
 
 /// The gap between parts of an exemplar that are set side by side, as a part of its longer side.
 const GAP: f64 = 0.01;
@@ -42,7 +42,8 @@ pub(super) fn side_by_side(regions: &[&Region]) -> Region {
     Region::from_contours(grid, contours).expect("regions that stand apart do not meet")
 }
 
-/// `region` split along one of `cuts`, with its parts in each other's place and `between` them if given. `choice` 0 is
+/// `region` split along one of `cuts`, with its parts in each other's place and `between` them if given, and where
+/// `kept` ranges of it are then. `choice` 0 is
 /// the cut through the fewest strands in the middle of the region: nearer to its ends there are only tips, which a
 /// split would set free. 1 is the next best, and so on.
 ///
@@ -53,7 +54,8 @@ pub(super) fn opened(
     between: Option<&Region>,
     cuts: &[reeb::Cut],
     choice: usize,
-) -> Result<Region, JobError> {
+    kept: &[KeptRange],
+) -> Result<(Region, Vec<KeptRange>), JobError> {
     let (low, high) = region.bounds_mm().unwrap_or_default();
     let (middle, reach) = ((low.x + high.x) / 2.0, MIDDLE * (high.x - low.x) / 2.0);
     let is_outside = |cut: &reeb::Cut| (region.grid().mm(cut.x) - middle).abs() > reach;
@@ -64,11 +66,21 @@ pub(super) fn opened(
         let middle = is_outside(a).cmp(&is_outside(b));
         middle.then(a.portals().cmp(&b.portals())).then(thickest).then(a.x.cmp(&b.x))
     });
-    let [left, right] = cuts.iter().skip(choice).find_map(|cut| region.split_at(cut.x)).ok_or_else(|| {
+    let split = |cut: &&reeb::Cut| Some((region.grid().mm(cut.x), region.split_at(cut.x)?));
+    let (x_mm, [left, right]) = cuts.iter().skip(choice).find_map(split).ok_or_else(|| {
         JobError::Refused("a tile joins its copies where the exemplar is cut, and no cut crosses its ink; try --slicing uniform:T, or leave out --tile".to_owned())
     })?;
     let parts: Vec<&Region> = [Some(&right), between, Some(&left)].into_iter().flatten().collect();
-    Ok(side_by_side(&parts))
+    let opened = side_by_side(&parts);
+    let end_mm = opened.bounds_mm().unwrap_or_default().1.x;
+    // No cut is inside a kept range. What was left of the cut ends where the whole ends now.
+    let moved = kept.iter().map(|range| {
+        let is_left = low.x + range.to_mm <= x_mm + TOUCH;
+        let by_mm = if is_left { end_mm - x_mm - (x_mm - low.x) } else { low.x - x_mm };
+        KeptRange { from_mm: range.from_mm + by_mm, to_mm: range.to_mm + by_mm }
+    });
+    let kept = moved.collect();
+    Ok((opened, kept))
 }
 
 /// Leaves out the cuts that touch a side of the strip that `cut` is made of.
@@ -92,5 +104,5 @@ pub(super) fn join_own_copies(cut: &mut Cut, holds: bool) {
         cut.weights.rise = alpha * (size.y / (size.max_element() * UNIT)).powi(2);
         cut.sides = Sides::Held;
     }
-    cut.catalogue = Catalogue::new(cut.region(), &cut.slicing.cuts, &cut.weights).with_own_ends_only();
+    cut.weigh(true);
 }

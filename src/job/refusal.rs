@@ -2,7 +2,7 @@
 
 use crate::pieces::Catalogue;
 use crate::solver::Refusal;
-use crate::topology::{Goal, Shape};
+use crate::topology::{Goal, Shape, Wanted};
 
 use super::plan::{EPSILONS, PlanOptions};
 
@@ -15,6 +15,7 @@ pub(super) fn message(
 ) -> String {
     let along = format!("along {:.1} mm", options.length_mm);
     let Goal { components, holes, .. } = options.goal;
+    let shown = |wanted: Option<Wanted>| wanted.map_or_else(String::new, |w| w.to_string());
     match *refusal {
         Refusal::Length { below, above } => lengths(catalogue, options, below, above, bin_mm),
         Refusal::Drift => format!(
@@ -25,21 +26,21 @@ pub(super) fn message(
             break_witness(catalogue)
         ),
         Refusal::Components { nearest } => format!(
-            "no sequence {along} has exactly {} component(s): {}; {}",
-            components.unwrap_or(0),
+            "no sequence {along} has {} component(s): {}; {}",
+            shown(components),
             component_witness(catalogue, options),
             nearest_hint("--components", nearest)
         ),
         Refusal::Holes { nearest } => format!(
-            "no sequence {along} has exactly {} hole(s): {}; {}",
-            holes.unwrap_or(0),
+            "no sequence {along} has {} hole(s): {}; {}",
+            shown(holes),
             hole_witness(catalogue, options),
             nearest_hint("--holes", nearest)
         ),
         Refusal::Both { nearest_holes } => format!(
             "{} component(s) can be had {along}, and {} hole(s) can, but not both in one sequence; {}",
-            components.unwrap_or(0),
-            holes.unwrap_or(0),
+            shown(components),
+            shown(holes),
             nearest_hint("--holes", nearest_holes)
         ),
     }
@@ -110,7 +111,7 @@ fn unbroken_run_exists(catalogue: &Catalogue, shape: Shape) -> bool {
 }
 
 fn component_witness(catalogue: &Catalogue, options: &PlanOptions) -> String {
-    match options.goal.components {
+    match options.goal.components.map(Wanted::most) {
         Some(1) if !unbroken_run_exists(catalogue, options.shape) => {
             "every run of pieces passes an empty cut, where all strands have ended, or a piece that holds an island".to_owned()
         }
@@ -124,7 +125,7 @@ fn component_witness(catalogue: &Catalogue, options: &PlanOptions) -> String {
 fn hole_witness(catalogue: &Catalogue, options: &PlanOptions) -> String {
     let with_holes = catalogue.descriptors().iter().filter(|d| d.holes() > 0).count();
     let pieces = catalogue.pieces().len();
-    match options.goal.holes {
+    match options.goal.holes.map(Wanted::most) {
         Some(0) if with_holes > 0 => {
             format!(
                 "{with_holes} of the {pieces} pieces have holes of their own, and joins of the others close more"

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use super::certificate::Certificate;
+use super::json;
 use crate::domain::Squeeze;
 use crate::verify::Narrowest;
 
@@ -25,6 +27,37 @@ pub struct SeamReport {
     pub worst_angle_before_deg: f64,
     /// The greatest turn of a contour at a seam after fitting, in degrees.
     pub worst_angle_after_deg: f64,
+}
+
+/// A cut that was left out, as its narrowest portal is under the minimum feature (Zhou 2014 §5.2.1).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct DroppedCutReport {
+    /// Where it would have been, from the left edge of the exemplar at the size that it has in the band.
+    pub x_mm: f64,
+    /// The height of its narrowest portal.
+    pub portal_mm: f64,
+}
+
+/// How pieces were bent to meet.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StitchReport {
+    /// `warp` or `lri`: what the band was made with.
+    pub method: String,
+    /// Pieces that `lri` would have broken, and that were warped instead.
+    pub fallbacks: Vec<FallbackReport>,
+    /// The seams beside such pieces, by their number from 0 along the band.
+    pub fallback_seams: Vec<usize>,
+}
+
+/// A piece that was warped instead.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FallbackReport {
+    /// Its place in the sequence, from 0.
+    pub place: usize,
+    /// Its number in the exemplar, from 0.
+    pub piece: usize,
+    /// What would have been wrong.
+    pub fault: String,
 }
 
 /// How long a stage took.
@@ -51,10 +84,10 @@ pub struct BandReport {
     pub curve: Option<InputReport>,
     /// The seed, if one was given.
     pub seed: Option<u64>,
-    /// Components that were asked for.
-    pub wanted_components: Option<u32>,
-    /// Holes that were asked for.
-    pub wanted_holes: Option<u32>,
+    /// The least and the greatest number of components that were asked for.
+    pub wanted_components: Option<[u32; 2]>,
+    /// The least and the greatest number of holes that were asked for.
+    pub wanted_holes: Option<[u32; 2]>,
     /// Whether a closed pattern was asked for.
     pub wanted_closed_pattern: bool,
     /// Components of the written files.
@@ -75,7 +108,15 @@ pub struct BandReport {
     pub pieces_in_exemplar: usize,
     /// Pieces of the band.
     pub pieces_in_result: usize,
-    /// The pieces of the band in order, by their number in the exemplar from 0.
+    /// Whether pieces may be used left for right.
+    pub mirror: bool,
+    /// Pieces of the band that are.
+    pub mirrored_pieces_in_result: usize,
+    /// Ranges of the exemplar that were not cut, from its left edge at the size that it has in the band.
+    pub kept_mm: Vec<[f64; 2]>,
+    /// Cuts left out because of the minimum feature.
+    pub dropped_cuts: Vec<DroppedCutReport>,
+    /// The pieces of the band in order, by their number in the exemplar from 0; n + i is piece i of n, mirrored.
     pub sequence: Vec<usize>,
     /// The cost of the sequence (Zhou 2014 §3.6.1, with jumps and rises).
     pub cost: f64,
@@ -97,6 +138,8 @@ pub struct BandReport {
     pub squeezes: Vec<Squeeze>,
     /// The seams.
     pub seams: SeamReport,
+    /// How the pieces were bent to meet at the seams.
+    pub stitching: StitchReport,
     /// Partial runs that the search made.
     pub search_labels: usize,
     /// States of the automaton that it met.
@@ -123,6 +166,8 @@ pub struct BandReport {
     pub volume_mm3: Option<f64>,
     /// The files that were written.
     pub files: Vec<String>,
+    /// What proves the counts without trusting the search.
+    pub certificate: Certificate,
     /// What the user may want to know.
     pub notes: Vec<String>,
     /// Time per stage.
@@ -130,11 +175,8 @@ pub struct BandReport {
 }
 
 impl BandReport {
-    /// The report as indented JSON, ending in a line break.
+    /// The report as indented JSON, arrays on one line, ending in a line break.
     pub fn to_json(&self) -> String {
-        let mut text =
-            serde_json::to_string_pretty(self).expect("a report has no maps with keys that are not text");
-        text.push('\n');
-        text
+        json::indented(self)
     }
 }

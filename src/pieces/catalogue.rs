@@ -1,8 +1,12 @@
 //! The catalogue: pieces, and the table of what each join costs.
 
+use std::cmp::Ordering;
+use std::ops::Range;
+
 use thiserror::Error;
 
 use super::cut_up::cut_up;
+use super::mirror::mirrored;
 use super::piece::{Endpoint, Piece};
 use crate::planar::Region;
 use crate::reeb::Cut;
@@ -20,7 +24,8 @@ pub struct CostWeights {
     /// The cost of a join that moves the run up or down by the exemplar's height; it grows with the square. The
     /// paper has no such term and leaves bands that climb to the fit; 0 is the paper.
     pub rise: f64,
-    /// How many successors of each piece are kept: the cheapest, and always the exemplar's own next piece.
+    /// How many successors of each piece are kept: the cheapest, and always the exemplar's own next piece. With
+    /// mirrored pieces, so many of its own orientation and so many of the other, so that none is lost to them.
     pub successors: usize,
 }
 
@@ -72,10 +77,24 @@ pub struct Join {
     pub is_natural: bool,
 }
 
+/// Where a piece comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Origin {
+    /// Its number in the exemplar, from 0 at the left.
+    pub index: usize,
+    /// Whether it is shown left for right.
+    pub is_mirrored: bool,
+}
+
 /// The pieces of an exemplar and the joins between them.
+///
+/// Pieces 0 to n − 1 are the exemplar's, from left to right. With mirrored pieces, n + i is piece i left for
+/// right; in the mirror, the exemplar begins with piece 2n − 1 and ends with piece n.
 #[derive(Debug, Clone)]
 pub struct Catalogue {
     pieces: Vec<Piece>,
+    /// The number n of pieces of the exemplar.
+    originals: usize,
     descriptors: Vec<Descriptor>,
     joins: Vec<Vec<Join>>,
     width_mm: f64,
@@ -91,17 +110,74 @@ const REFERENCE_MM: f64 = 60.0;
 impl Catalogue {
     /// Cuts `region` at `cuts` and weighs every join.
     pub fn new(region: &Region, cuts: &[Cut], weights: &CostWeights) -> Self {
-        let pieces = cut_up(region, cuts);
-        let (low, high) = region.bounds_mm().unwrap_or_default();
-        let size = high - low;
-        let unit_mm = size.max_element() / REFERENCE_MM;
-        let scale = Scale { unit_mm, height_mm: size.y };
-        let joins = (0..pieces.len()).map(|from| joins_from(&pieces, from, scale, weights)).collect();
-        let descriptors = pieces.iter().map(|p| p.descriptor.clone()).collect();
-        Self { pieces, descriptors, joins, width_mm: size.x, height_mm: size.y, own_ends_only: false }
+        Self::of(cut_up(region, cuts), false, region, weights)
     }
 
-    /// The pieces, in the exemplar's order.
+    /// As [`Self::new`], with every piece a second time, mirrored left for right.
+    pub fn with_mirrored(region: &Region, cuts: &[Cut], weights: &CostWeights) -> Self {
+        Self::of(cut_up(region, cuts), true, region, weights)
+    }
+
+    fn of(mut pieces: Vec<Piece>, is_mirrored: bool, region: &Region, weights: &CostWeights) -> Self {
+        let (low, high) = region.bounds_mm().unwrap_or_default();
+        let size = high - low;
+        let originals = pieces.len();
+        if is_mirrored {
+            let total_mm = pieces.last().map_or(0.0, |p| p.x_mm + p.width_mm);
+            pieces.extend((0..originals).map(|i| mirrored(&pieces[i], total_mm)).collect::<Vec<_>>());
+        }
+        let descriptors = pieces.iter().map(|p| p.descriptor.clone()).collect();
+        let mut catalogue = Self {
+            pieces,
+            originals,
+            descriptors,
+            joins: Vec::new(),
+            width_mm: size.x,
+            height_mm: size.y,
+            own_ends_only: false,
+        };
+        let scale = Scale { unit_mm: size.max_element() / REFERENCE_MM, height_mm: size.y };
+        catalogue.joins =
+            (0..catalogue.pieces.len()).map(|from| catalogue.joins_from(from, scale, weights)).collect();
+        catalogue
+    }
+
+    /// The number of pieces of the exemplar, without mirrored ones.
+    pub fn originals(&self) -> usize {
+        self.originals
+    }
+
+    /// Where a piece comes from.
+    pub fn origin(&self, piece: usize) -> Origin {
+        if piece < self.originals {
+            Origin { index: piece, is_mirrored: false }
+        } else {
+            Origin { index: piece - self.originals, is_mirrored: true }
+        }
+    }
+
+    /// The piece that follows in the exemplar or, after a mirrored piece, in its mirror image; `None` at the end.
+    pub fn natural_next(&self, piece: usize) -> Option<usize> {
+        match self.origin(piece) {
+            Origin { index, is_mirrored: false } => (index + 1 < self.originals).then_some(piece + 1),
+            Origin { index, is_mirrored: true } => (index > 0).then_some(piece - 1),
+        }
+    }
+
+    /// Whether the exemplar, or its mirror image, begins with this piece.
+    pub fn is_own_begin(&self, piece: usize) -> bool {
+        match self.origin(piece) {
+            Origin { index, is_mirrored: false } => index == 0,
+            Origin { index, is_mirrored: true } => index + 1 == self.originals,
+        }
+    }
+
+    /// Whether the exemplar, or its mirror image, ends with this piece.
+    pub fn is_own_end(&self, piece: usize) -> bool {
+        self.natural_next(piece).is_none()
+    }
+
+    /// The pieces: the exemplar's in its order, then the mirrored ones, if there are any, in the same order.
     pub fn pieces(&self) -> &[Piece] {
         &self.pieces
     }
@@ -127,7 +203,7 @@ impl Catalogue {
         self
     }
 
-    /// Whether open runs may only begin with the exemplar's first piece and end with its last.
+    /// Whether open runs may only begin and end as the exemplar does, or its mirror image.
     pub fn has_own_ends_only(&self) -> bool {
         self.own_ends_only
     }
@@ -141,29 +217,20 @@ impl Catalogue {
     pub fn height_mm(&self) -> f64 {
         self.height_mm
     }
-}
 
-/// What positions are measured in.
-#[derive(Clone, Copy)]
-struct Scale {
-    /// 1/60 of the exemplar's longer side.
-    unit_mm: f64,
-    /// The exemplar's height.
-    height_mm: f64,
-}
-
-fn joins_from(pieces: &[Piece], from: usize, scale: Scale, weights: &CostWeights) -> Vec<Join> {
-    let right = &pieces[from].right;
-    let mut joins: Vec<Join> = (0..pieces.len())
+    fn joins_from(&self, from: usize, scale: Scale, weights: &CostWeights) -> Vec<Join> {
+        let pieces = &self.pieces;
+        let right = &pieces[from].right;
+        let natural = self.natural_next(from);
         // A piece after itself is the shortest of the degenerate cycles; slicing by events never allows it
         // (Zhou 2014 §5.2), uniform slicing would.
-        .filter(|&to| to != from && pieces[to].left.len() == right.len())
-        .map(|to| {
-            let is_natural = to == from + 1;
+        let fits = |&to: &usize| to != from && pieces[to].left.len() == right.len();
+        let join = |to: usize| {
+            let is_natural = natural == Some(to);
             let (cost, rise_mm) = join_cost(right, &pieces[to].left, scale.unit_mm, weights.alpha);
             // An empty join inside the exemplar is one of its own gaps; at its ends it is a break that the
             // exemplar does not have.
-            let is_break = right.is_empty() && (from + 1 == pieces.len() || to == 0);
+            let is_break = right.is_empty() && (self.is_own_end(from) || self.is_own_begin(to));
             let jumps = if is_natural {
                 0.0
             } else if is_break {
@@ -174,15 +241,38 @@ fn joins_from(pieces: &[Piece], from: usize, scale: Scale, weights: &CostWeights
             let jump = weights.jump * jumps;
             let rise = weights.rise * (rise_mm / scale.height_mm).powi(2);
             Join { to, cost: cost + jump + rise, rise_mm, is_natural }
-        })
-        .collect();
-    joins.sort_by(|a, b| a.cost.total_cmp(&b.cost).then(a.to.cmp(&b.to)));
-    let natural = joins.iter().position(|j| j.is_natural);
-    if let Some(late) = natural.filter(|&at| at >= weights.successors) {
-        joins.swap(late, weights.successors.saturating_sub(1));
+        };
+        let of_one_orientation = |range: Range<usize>| {
+            let mut joins: Vec<Join> = range.filter(fits).map(join).collect();
+            joins.sort_by(Join::order);
+            let natural = joins.iter().position(|j| j.is_natural);
+            if let Some(late) = natural.filter(|&at| at >= weights.successors) {
+                joins.swap(late, weights.successors.saturating_sub(1));
+            }
+            joins.truncate(weights.successors.max(1));
+            joins
+        };
+        let mut joins = of_one_orientation(0..self.originals);
+        joins.extend(of_one_orientation(self.originals..pieces.len()));
+        joins.sort_by(Join::order);
+        joins
     }
-    joins.truncate(weights.successors.max(1));
-    joins
+}
+
+impl Join {
+    /// Cheaper first, then by number.
+    fn order(&self, other: &Self) -> Ordering {
+        self.cost.total_cmp(&other.cost).then(self.to.cmp(&other.to))
+    }
+}
+
+/// What positions are measured in.
+#[derive(Clone, Copy)]
+struct Scale {
+    /// 1/60 of the exemplar's longer side.
+    unit_mm: f64,
+    /// The exemplar's height.
+    height_mm: f64,
 }
 
 /// α d_match + (1 − α) d_tangent and the best offset τ (Zhou 2014 §3.6.1).

@@ -56,17 +56,10 @@ pub(super) fn cut_up(region: &Region, cuts: &[Cut]) -> Vec<Piece> {
         walk.contour(number, contour, &mut pieces, &mut loops);
     }
     for (piece, loops) in pieces.iter_mut().zip(loops) {
-        piece.chains.sort_by_key(|chain| end_key(chain.start));
+        piece.chains.sort_by_key(|chain| chain.start.order());
         piece.descriptor = descriptor(piece, loops);
     }
     pieces
-}
-
-fn end_key(end: End) -> (usize, usize) {
-    match end {
-        End::Left(k) => (0, k),
-        End::Right(k) => (1, k),
-    }
 }
 
 struct Walk<'a> {

@@ -29,6 +29,16 @@ pub enum End {
     Right(usize),
 }
 
+impl End {
+    /// Orders ends: the left side first, each from the top.
+    pub(super) fn order(self) -> (usize, usize) {
+        match self {
+            Self::Left(k) => (0, k),
+            Self::Right(k) => (1, k),
+        }
+    }
+}
+
 /// A part of a contour inside a piece, from cut to cut, with the ink on its left.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chain {
@@ -43,7 +53,8 @@ pub struct Chain {
 /// The ink between two neighbouring cuts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Piece {
-    /// Where the piece begins, in millimetres from where the first piece does.
+    /// Where the piece begins, in millimetres from where the first piece does; of a mirrored piece, in the
+    /// mirrored exemplar.
     pub x_mm: f64,
     /// Its width w in millimetres.
     pub width_mm: f64,

@@ -4,15 +4,17 @@
 //! and the contours cross the line most squarely (a slanted crossing makes a kink when pieces of other
 //! slants follow). Zhou 2014 §5.2 takes the middle instead. Where no event is for long, there are several: three
 //! strands without an event would else be one piece, which nothing can follow. Cuts too close for a piece
-//! between them are thinned out. A cut whose narrowest portal is under the minimum feature is dropped (§5.2.1);
-//! uniform slicing (§5.1) takes equally spaced lines.
+//! between them are thinned out, the best ones staying. A cut whose narrowest portal is under the minimum feature is
+//! dropped (§5.2.1); uniform slicing (§5.1) takes equally spaced lines. Neither cuts inside a [`KeptRange`].
 
 use std::cmp::Ordering;
+use std::collections::BTreeMap;
 
 use thiserror::Error;
 
 use super::graph::ReebGraph;
-use super::persistence::persistence;
+use super::intervals::{Interval, event_intervals, uniform_intervals};
+use super::kept::{Kept, KeptRange};
 use super::section::{CrossSections, Crossing};
 use crate::planar::{Region, Tolerances};
 
@@ -70,7 +72,7 @@ fn narrowest_portal_mm(crossings: &[Crossing]) -> f64 {
 /// Why there is no cut between two neighbouring events.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CutDropped {
-    /// Where the cut would have been best, in millimetres.
+    /// Where the cut would have been best, in millimetres from the left edge of the ink.
     pub x_mm: f64,
     /// The height of its narrowest portal.
     pub portal_mm: f64,
@@ -85,6 +87,8 @@ pub struct Slicing {
     pub dropped: Vec<CutDropped>,
     /// Places where a cut was wanted and none could be: contours run along it, or nearly touch on it.
     pub missed: usize,
+    /// Places where a cut was wanted and a kept range forbids it.
+    pub kept_whole: usize,
 }
 
 /// Why an exemplar cannot be sliced.
@@ -107,27 +111,42 @@ pub enum SlicingError {
     TooThin {
         /// What was asked for.
         min_feature_mm: f64,
-        /// The cut with the widest narrowest portal.
+        /// The cut with the widest narrowest portal, from the left edge of the ink.
         x_mm: f64,
         /// The height of that portal.
         portal_mm: f64,
+    },
+    /// A range to keep that is none.
+    #[error("--keep {from_mm:.2}mm..{to_mm:.2}mm {fault}; the exemplar is {width_mm:.2} mm wide")]
+    Kept {
+        /// Where the range begins.
+        from_mm: f64,
+        /// Where it ends.
+        to_mm: f64,
+        /// What is wrong with it, and what would work.
+        fault: &'static str,
+        /// The width of the exemplar's ink.
+        width_mm: f64,
+    },
+    /// Every place for a cut is in a kept range.
+    #[error(
+        "--keep leaves no place for a cut in the exemplar, which is {width_mm:.2} mm wide; keep less of it"
+    )]
+    AllKept {
+        /// The width of the exemplar's ink.
+        width_mm: f64,
     },
 }
 
 /// No cut through more strands than this: their partitions could not be told apart in any time.
 const MOST_PORTALS: usize = 4096;
-/// Places tried between two events. More find a slightly better cut; fewer miss the straight part of a curl.
-const CANDIDATES: i64 = 24;
 /// No cut where a contour runs along it more steeply than this (cosine of 78 degrees): a strand that is cut
 /// along its length cannot be joined to another without a kink.
 const LEAST_SQUARENESS: f64 = 0.2;
+/// The parts of an interval in which distances from its middle are told apart.
+const ASIDE_PARTS: f64 = 96.0;
 /// Portals closer than this part of the exemplar's height are not told apart, and no cut is placed there.
 const SEPARATION: f64 = 1e-6;
-/// Where no event is for long, there is a cut for every such part of the exemplar's height. More, and
-/// sequences of short equal pieces look mechanical; fewer, and strands without events cannot be cut to length.
-const LONGEST_PIECE: f64 = 0.5;
-/// Cuts that share an interval keep this part of their room clear at either end, so that they stay apart.
-const CLEARANCE: f64 = 1.0 / 6.0;
 
 impl Slicing {
     /// The cuts of `region` by `rule`.
@@ -140,14 +159,31 @@ impl Slicing {
         rule: SlicingRule,
         tolerances: &Tolerances,
     ) -> Result<Self, SlicingError> {
+        Self::keeping(region, reeb, rule, &[], tolerances)
+    }
+
+    /// The cuts of `region` by `rule`, none of them inside a range of `kept`.
+    ///
+    /// # Errors
+    /// [`SlicingError`] for parameters and ranges out of range, and when the minimum feature or the ranges leave
+    /// no cut.
+    pub fn keeping(
+        region: &Region,
+        reeb: &ReebGraph,
+        rule: SlicingRule,
+        kept: &[KeptRange],
+        tolerances: &Tolerances,
+    ) -> Result<Self, SlicingError> {
+        let mut chosen = Self { cuts: Vec::new(), dropped: Vec::new(), missed: 0, kept_whole: 0 };
         let Some((low, high)) = region.bounds_mm() else {
-            return Ok(Self { cuts: Vec::new(), dropped: Vec::new(), missed: 0 });
+            return Ok(chosen);
         };
         let grid = region.grid();
+        let kept = Kept::new(kept, grid, (low.x, high.x))?;
         let sections = CrossSections::new(region);
         let (left, right) = (grid.steps(low.x), grid.steps(high.x));
         let mut shortest = 0;
-        let intervals = match rule {
+        let wanted = match rule {
             SlicingRule::Uniform { lines } => uniform_intervals(lines, left, right)?,
             SlicingRule::Reeb { persistence_mm } => {
                 if !(0.0..=high.x - low.x).contains(&persistence_mm) {
@@ -159,22 +195,27 @@ impl Slicing {
                     });
                 }
                 shortest = grid.steps(persistence_mm).max(1);
-                event_intervals(reeb, shortest, grid.steps(LONGEST_PIECE * (high.y - low.y)).max(1))
+                event_intervals(reeb, shortest, high.y - low.y, grid)
             }
         };
-        let mut chosen = Self { cuts: Vec::new(), dropped: Vec::new(), missed: 0 };
-        let separation = SEPARATION * (high.y - low.y);
-        let limits = Limits { separation, min_feature_mm: tolerances.min_feature_mm() };
-        for best in spread(best_cuts(&sections, &intervals, limits), (left, right), shortest) {
-            let portal_mm = best.narrowest_portal_mm();
+        let intervals: Vec<Interval> = wanted.iter().filter_map(|interval| interval.outside(&kept)).collect();
+        chosen.kept_whole = wanted.len() - intervals.len();
+        let min_feature_mm = tolerances.min_feature_mm();
+        let limits = Limits { height_mm: high.y - low.y, min_feature_mm, centre: (left + right) / 2 };
+        let best = best_cuts(&sections, &intervals, &kept, limits);
+        for cut in spread(best, (left, right), shortest) {
+            let portal_mm = cut.narrowest_portal_mm();
             if portal_mm < tolerances.min_feature_mm() {
-                chosen.dropped.push(CutDropped { x_mm: grid.mm(best.x), portal_mm });
+                chosen.dropped.push(CutDropped { x_mm: grid.mm(cut.x) - low.x, portal_mm });
             } else {
-                chosen.cuts.push(best);
+                chosen.cuts.push(cut);
             }
         }
         chosen.missed = intervals.len() - chosen.cuts.len() - chosen.dropped.len();
         chosen.leave_out_blank_pieces(&sections);
+        if chosen.cuts.is_empty() && chosen.dropped.is_empty() && chosen.kept_whole > 0 {
+            return Err(SlicingError::AllKept { width_mm: high.x - low.x });
+        }
         match chosen.dropped.iter().max_by(|a, b| a.portal_mm.total_cmp(&b.portal_mm)) {
             Some(widest) if chosen.cuts.is_empty() => Err(SlicingError::TooThin {
                 min_feature_mm: tolerances.min_feature_mm(),
@@ -185,88 +226,50 @@ impl Slicing {
         }
     }
 
-    /// Between two empty cuts with nothing between them there is no ink to make a piece of.
+    /// Between two empty cuts with nothing between them there is no ink to make a piece of. Of the cuts of one
+    /// gap the middle one stays, so that the mirrored exemplar keeps the same.
     fn leave_out_blank_pieces(&mut self, sections: &CrossSections<'_>) {
-        let mut last_empty: Option<i64> = None;
-        self.cuts.retain(|cut| {
-            if !cut.crossings.is_empty() {
-                last_empty = None;
-                return true;
+        let mut at = 0;
+        while at < self.cuts.len() {
+            let is_same_gap = |cut: &Cut, next: &Cut| {
+                next.crossings.is_empty() && !sections.has_vertex_between(cut.x, next.x)
+            };
+            let mut end = at + 1;
+            if self.cuts[at].crossings.is_empty() {
+                while end < self.cuts.len() && is_same_gap(&self.cuts[end - 1], &self.cuts[end]) {
+                    end += 1;
+                }
             }
-            let is_blank = last_empty.is_some_and(|x| !sections.has_vertex_between(x, cut.x));
-            if !is_blank {
-                last_empty = Some(cut.x);
-            }
-            !is_blank
-        });
+            let middle = (at + end - 1) / 2;
+            self.cuts.drain(middle + 1..end);
+            self.cuts.drain(at..middle);
+            at += 1;
+        }
     }
-}
-
-/// An open interval of x in which one cut is placed, with the places to try.
-struct Interval {
-    low: i64,
-    high: i64,
-    tries: Vec<i64>,
-}
-
-fn uniform_intervals(lines: usize, left: i64, right: i64) -> Result<Vec<Interval>, SlicingError> {
-    let n = i64::try_from(lines).unwrap_or(i64::MAX);
-    if !(1..=10_000).contains(&n) {
-        return Err(SlicingError::Parameter {
-            name: "slicing uniform",
-            value: n as f64,
-            wanted: "from 1 to 10000 lines",
-        });
-    }
-    let at = |k: i64| left + ((right - left) as f64 * k as f64 / (n + 1) as f64) as i64;
-    let spacing = ((right - left) / (n + 1)).max(2);
-    Ok((1..=n)
-        .map(|k| Interval { low: at(k) - spacing / 2, high: at(k) + spacing / 2, tries: vec![at(k)] })
-        .collect())
-}
-
-fn event_intervals(reeb: &ReebGraph, threshold: i64, longest: i64) -> Vec<Interval> {
-    let spans = persistence(reeb);
-    let mut xs: Vec<i64> = reeb
-        .points()
-        .zip(&spans)
-        .filter(|(_, span)| span.is_none_or(|s| s >= threshold))
-        .map(|((_, p), _)| p.at.x)
-        .collect();
-    xs.sort_unstable();
-    xs.windows(2)
-        .filter(|pair| pair[1] - pair[0] >= threshold.max(8))
-        .flat_map(|pair| {
-            let (low, high) = (pair[0], pair[1]);
-            let cuts = ((high - low) / longest).max(1);
-            (0..cuts)
-                .map(move |k| (low + (high - low) * k / cuts, low + (high - low) * (k + 1) / cuts, cuts > 1))
-        })
-        .map(|(low, high, shared)| {
-            let clear = if shared { ((high - low) as f64 * CLEARANCE) as i64 } else { 0 };
-            let (first, room) = (low + clear, high - low - 2 * clear);
-            let tries = (1..CANDIDATES).map(|k| first + room * k / CANDIDATES).collect();
-            Interval { low, high, tries }
-        })
-        .collect()
 }
 
 /// What a cut must keep to.
 #[derive(Clone, Copy)]
 struct Limits {
-    /// Crossings closer than this are not told apart.
-    separation: f64,
+    /// The height of the exemplar.
+    height_mm: f64,
     /// A cut through thinner ink will be dropped, so any other is better.
     min_feature_mm: f64,
+    /// The middle of the exemplar.
+    centre: i64,
 }
 
 /// The best cut of each interval that has one, ascending, with its merit.
-fn best_cuts(sections: &CrossSections<'_>, intervals: &[Interval], limits: Limits) -> Vec<(Cut, Merit)> {
+fn best_cuts(
+    sections: &CrossSections<'_>,
+    intervals: &[Interval],
+    kept: &Kept,
+    limits: Limits,
+) -> Vec<(Cut, Merit)> {
     let mut xs = Vec::new();
     for interval in intervals {
-        let free =
-            interval.tries.iter().filter_map(|&x| sections.clear_of_vertices(x, interval.low, interval.high));
-        xs.extend(free);
+        let clear = |&x: &i64| sections.clear_of_vertices(x, interval.low, interval.high);
+        xs.extend(interval.tries.iter().filter_map(clear).filter(|&x| !kept.forbids(x)));
     }
     xs.sort_unstable();
     xs.dedup();
@@ -275,14 +278,10 @@ fn best_cuts(sections: &CrossSections<'_>, intervals: &[Interval], limits: Limit
     let mut chosen = Vec::with_capacity(intervals.len());
     for interval in intervals {
         let range = xs.partition_point(|&x| x <= interval.low)..xs.partition_point(|&x| x < interval.high);
-        let middle = (interval.low + interval.high) / 2;
         let best = range
-            .filter_map(|i| {
-                let cut = cuts[i].as_ref()?;
-                Some((i, Merit::new(cut, limits)?, (cut.x - middle).abs()))
-            })
-            .max_by(|a, b| a.1.order(&b.1).then(b.2.cmp(&a.2)));
-        if let Some((i, merit, _)) = best {
+            .filter_map(|i| Some((i, Merit::new(cuts[i].as_ref()?, interval, limits)?)))
+            .max_by(|a, b| a.1.order(&b.1));
+        if let Some((i, merit)) = best {
             chosen.extend(cuts[i].take().map(|cut| (cut, merit)));
         }
     }
@@ -290,57 +289,69 @@ fn best_cuts(sections: &CrossSections<'_>, intervals: &[Interval], limits: Limit
 }
 
 /// Leaves out the worse of two cuts closer than `shortest`, and cuts so close to an end of the exemplar: what
-/// lies between is too narrow to be a piece.
-fn spread(cuts: Vec<(Cut, Merit)>, (left, right): (i64, i64), shortest: i64) -> Vec<Cut> {
-    let mut kept: Vec<(Cut, Merit)> = Vec::with_capacity(cuts.len());
-    for (cut, merit) in cuts {
-        match kept.last() {
-            _ if (cut.x - left).min(right - cut.x) < shortest => {}
-            Some((last, better)) if cut.x - last.x < shortest => {
-                if merit.order(better).is_gt() {
-                    kept.pop();
-                    kept.push((cut, merit));
-                }
-            }
-            _ => kept.push((cut, merit)),
+/// lies between is too narrow to be a piece. The best choose first, so that neither end of the exemplar does.
+fn spread(mut cuts: Vec<(Cut, Merit)>, (left, right): (i64, i64), shortest: i64) -> Vec<Cut> {
+    cuts.retain(|(cut, _)| (cut.x - left).min(right - cut.x) >= shortest);
+    cuts.sort_by(|(a, better), (b, worse)| worse.order(better).then(a.x.cmp(&b.x)));
+    let mut kept: BTreeMap<i64, Cut> = BTreeMap::new();
+    for (cut, _) in cuts {
+        let is_apart = shortest == 0 || kept.range(cut.x - shortest + 1..cut.x + shortest).next().is_none();
+        if is_apart {
+            kept.insert(cut.x, cut);
         }
     }
-    kept.into_iter().map(|(cut, _)| cut).collect()
+    kept.into_values().collect()
 }
 
 /// How good a cut is.
 #[derive(Clone, Copy)]
 struct Merit {
     is_thick_enough: bool,
-    score: f64,
+    /// In parts of a thousand: of what is as good in a mirror neither may be better by the noise of a drawing.
+    score: i64,
+    /// How far it is from the middle of its interval, in parts of the interval.
+    aside: i64,
+    /// How far it is from the middle of the exemplar: of two equal places in a symmetric motif, a mirror must
+    /// show the same one.
+    outward: i64,
 }
 
 impl Merit {
     /// `None` where there can be no cut.
-    fn new(cut: &Cut, limits: Limits) -> Option<Self> {
+    fn new(cut: &Cut, interval: &Interval, limits: Limits) -> Option<Self> {
         let crossings = &cut.crossings;
-        let apart = crossings.windows(2).all(|w| w[0].y_mm - w[1].y_mm > limits.separation);
+        let apart = crossings.windows(2).all(|w| w[0].y_mm - w[1].y_mm > SEPARATION * limits.height_mm);
         let square = crossings.iter().all(|c| c.tangent.x >= LEAST_SQUARENESS);
         let is_thick_enough = cut.narrowest_portal_mm() >= limits.min_feature_mm;
-        (apart && square && cut.portals() <= MOST_PORTALS)
-            .then(|| Self { is_thick_enough, score: score(crossings) })
+        let aside = (cut.x - (interval.low + interval.high) / 2).abs() as f64;
+        let parts = ASIDE_PARTS / (interval.high - interval.low) as f64;
+        (apart && square && cut.portals() <= MOST_PORTALS).then(|| Self {
+            is_thick_enough,
+            score: (1000.0 * score(crossings, limits.height_mm).ln()).round() as i64,
+            aside: (aside * parts).round() as i64,
+            outward: (cut.x - limits.centre).abs(),
+        })
     }
 
     fn order(&self, other: &Self) -> Ordering {
-        self.is_thick_enough.cmp(&other.is_thick_enough).then(self.score.total_cmp(&other.score))
+        self.is_thick_enough
+            .cmp(&other.is_thick_enough)
+            .then(self.score.cmp(&other.score))
+            .then(other.aside.cmp(&self.aside))
+            .then(other.outward.cmp(&self.outward))
     }
 }
 
-/// How good a cut is: the thickness of the thinnest portal or gap, less where contours cross at a slant.
+/// How good a cut is: the thickness of the thinnest portal or gap in parts of the exemplar, less where contours cross at a slant.
 ///
 /// Thickness is measured across the strand. Along the cut, a strand that runs beside it would pass for a thick
 /// one, and cuts would be drawn to the places that are worst for them. Its root counts, as a slant shows more
 /// at a seam than a strand that is a little thinner.
-fn score(crossings: &[Crossing]) -> f64 {
+fn score(crossings: &[Crossing], height_mm: f64) -> f64 {
     if crossings.is_empty() {
-        return f64::MAX;
+        return f64::INFINITY;
     }
-    let thickness = |w: &[Crossing]| (w[0].y_mm - w[1].y_mm) * w[0].tangent.x.min(w[1].tangent.x);
+    let thickness = |w: &[Crossing]| (w[0].y_mm - w[1].y_mm) / height_mm * w[0].tangent.x.min(w[1].tangent.x);
     let thinnest = crossings.windows(2).map(thickness).fold(f64::INFINITY, f64::min);
     let mean = crossings.iter().map(|c| c.tangent.x).sum::<f64>() / crossings.len() as f64;
     let worst = crossings.iter().map(|c| c.tangent.x).fold(1.0, f64::min);

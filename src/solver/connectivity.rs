@@ -7,7 +7,8 @@
 
 use rustc_hash::FxHashMap;
 
-use super::problem::{Cost, Problem};
+use super::graph::Scope;
+use super::problem::Problem;
 use crate::topology::{Descriptor, Goal, Shape};
 
 /// Components and holes that are closed on the way.
@@ -27,25 +28,7 @@ impl Counts {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Edge {
     pub(super) to: u32,
-    pub(super) cost: Cost,
     pub(super) closes: Counts,
-}
-
-/// Stopping at a node.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Ending {
-    pub(super) cost: Cost,
-    pub(super) closes: Counts,
-}
-
-/// The part of a problem that a search looks at.
-pub(super) struct Scope<'s> {
-    /// The first pieces.
-    pub(super) firsts: &'s [usize],
-    /// The pieces that may occur.
-    pub(super) allowed: &'s [bool],
-    /// What stopping after each piece costs, where it may stop.
-    pub(super) stop: &'s [Option<Cost>],
 }
 
 /// The graph.
@@ -56,9 +39,8 @@ pub(super) struct Connectivity {
     edges: Vec<Edge>,
     /// Where the edges of each node begin, and where all end.
     first_edge: Vec<u32>,
-    endings: Vec<Option<Ending>>,
+    endings: Vec<Option<Counts>>,
     starts: Vec<(u32, Counts)>,
-    states: FxHashMap<Descriptor, u32>,
     nodes: FxHashMap<(u32, u32), u32>,
 }
 
@@ -68,21 +50,21 @@ const NODE_LIMIT: usize = 30_000;
 impl Connectivity {
     /// The graph of all runs within `scope` of which the goal does not rule out a join by itself; `None` when
     /// it is too large.
-    pub(super) fn new(problem: &Problem<'_>, goal: Goal, scope: &Scope<'_>) -> Option<Self> {
+    pub(super) fn new(problem: &Problem<'_>, goal: Goal, scope: &Scope) -> Option<Self> {
         let mut graph = Self {
             pieces: Vec::new(),
             edges: Vec::new(),
             first_edge: Vec::new(),
             endings: Vec::new(),
             starts: Vec::new(),
-            states: FxHashMap::default(),
             nodes: FxHashMap::default(),
         };
+        let mut known: FxHashMap<Descriptor, u32> = FxHashMap::default();
         let mut states: Vec<Descriptor> = Vec::new();
         let mut joins: FxHashMap<(u32, u32), Option<(u32, Counts)>> = FxHashMap::default();
         let mut queue: Vec<(u32, u32)> = Vec::new();
-        for &first in scope.firsts {
-            let (state, closes) = enter(&mut graph.states, &mut states, &problem.descriptors[first]);
+        for &(first, _) in &scope.starts {
+            let (state, closes) = enter(&mut known, &mut states, &problem.descriptors[first]);
             if admits(goal, closes, states[state as usize].open()) {
                 let node = graph.meet(first as u32, state, &mut queue);
                 graph.starts.push((node, closes));
@@ -96,19 +78,18 @@ impl Connectivity {
             }
             graph.first_edge.push(graph.edges.len() as u32);
             let ending = scope.stop[piece as usize];
-            let ending =
-                ending.and_then(|cost| ending_of(&states[state as usize], problem.shape, goal, cost));
+            let ending = ending.and_then(|_| ending_of(&states[state as usize], problem.shape, goal));
             graph.endings.push(ending);
             for step in problem.steps[piece as usize].iter().filter(|s| scope.allowed[s.to]) {
                 let key = (state, step.to as u32);
                 let joined = *joins.entry(key).or_insert_with(|| {
                     let run = states[state as usize].join(&problem.descriptors[step.to]).ok()?;
-                    let (state, closes) = enter(&mut graph.states, &mut states, &run);
+                    let (state, closes) = enter(&mut known, &mut states, &run);
                     admits(goal, closes, run.open()).then_some((state, closes))
                 });
                 if let Some((state, closes)) = joined {
                     let to = graph.meet(step.to as u32, state, &mut queue);
-                    graph.edges.push(Edge { to, cost: step.cost, closes });
+                    graph.edges.push(Edge { to, closes });
                 }
             }
         }
@@ -144,20 +125,14 @@ impl Connectivity {
         &self.edges[self.first_edge[node] as usize..self.first_edge[node + 1] as usize]
     }
 
-    /// What stopping at a node costs and closes, where it is possible with a goal's winding.
-    pub(super) fn ending(&self, node: usize) -> Option<Ending> {
+    /// What stopping at a node closes, where it is possible with a goal's winding.
+    pub(super) fn ending(&self, node: usize) -> Option<Counts> {
         self.endings[node]
     }
 
     /// The runs of one piece, and what is closed in them.
     pub(super) fn starts(&self) -> &[(u32, Counts)] {
         &self.starts
-    }
-
-    /// The node of a run by its last piece and its connections, in which nothing is closed.
-    pub(super) fn node(&self, piece: usize, connections: &Descriptor) -> Option<usize> {
-        let state = *self.states.get(connections)?;
-        self.nodes.get(&(piece as u32, state)).map(|&node| node as usize)
     }
 }
 
@@ -178,15 +153,15 @@ fn enter(
 
 /// Whether closing this much at once leaves a chance to meet the goal.
 fn admits(goal: Goal, closes: Counts, open: u32) -> bool {
-    goal.components.is_none_or(|most| closes.components + u32::from(open > 0) <= most)
-        && goal.holes.is_none_or(|most| closes.holes <= most)
+    goal.components.is_none_or(|wanted| closes.components + u32::from(open > 0) <= wanted.most())
+        && goal.holes.is_none_or(|wanted| closes.holes <= wanted.most())
 }
 
-fn ending_of(run: &Descriptor, shape: Shape, goal: Goal, cost: Cost) -> Option<Ending> {
+fn ending_of(run: &Descriptor, shape: Shape, goal: Goal) -> Option<Counts> {
     let topology = match shape {
         Shape::Open => run.finished()?,
         Shape::Ring => run.close().ok()?,
     };
     let closes = Counts { components: topology.components, holes: topology.holes };
-    (topology.closed_pattern || !goal.closed_pattern).then_some(Ending { cost, closes })
+    (topology.closed_pattern || !goal.closed_pattern).then_some(closes)
 }

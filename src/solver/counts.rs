@@ -7,7 +7,7 @@
 
 use super::connectivity::{Connectivity, Counts};
 use super::problem::Problem;
-use crate::topology::Goal;
+use crate::topology::{Goal, Wanted};
 
 /// A set of counts: for each number of components, a set of numbers of holes. A number that is not read is 0.
 pub(super) struct CountSet {
@@ -25,9 +25,9 @@ pub(super) struct Caps {
 }
 
 impl Caps {
-    /// Just what a goal reads.
+    /// Up to the most that a goal allows.
     pub(super) fn of(goal: Goal) -> Self {
-        Self { components: goal.components, holes: goal.holes }
+        Self { components: goal.components.map(Wanted::most), holes: goal.holes.map(Wanted::most) }
     }
 }
 
@@ -75,7 +75,7 @@ pub(super) fn counts(problem: &Problem<'_>, graph: &Connectivity, caps: Caps) ->
             set.copy_from_slice(here);
             here.fill(0);
             if let Some(ending) = graph.ending(node).filter(|_| problem.window.contains(&(length as u32))) {
-                frame.add_shifted(&mut found, &set, ending.closes);
+                frame.add_shifted(&mut found, &set, ending);
             }
             for edge in graph.edges(node) {
                 let longer = length + problem.widths[graph.piece(edge.to as usize)] as usize;
@@ -106,7 +106,7 @@ pub(super) fn ranges(problem: &Problem<'_>, graph: &Connectivity) -> Option<Rang
         for node in 0..n {
             let Some(here) = met[length % layers * n + node].take() else { continue };
             if let Some(ending) = graph.ending(node).filter(|_| problem.window.contains(&(length as u32))) {
-                here.plus(ending.closes).join(&mut found);
+                here.plus(ending).join(&mut found);
             }
             for edge in graph.edges(node) {
                 let longer = length + problem.widths[graph.piece(edge.to as usize)] as usize;
@@ -142,25 +142,13 @@ impl Ranges {
         known.most.components = known.most.components.max(self.most.components);
         known.most.holes = known.most.holes.max(self.most.holes);
     }
-
-    /// Whether neither count of a goal is out of range.
-    pub(super) fn admit(&self, goal: Goal) -> bool {
-        let within = |wanted: Option<u32>, least, most| wanted.is_none_or(|n| (least..=most).contains(&n));
-        within(goal.components, self.least.components, self.most.components)
-            && within(goal.holes, self.least.holes, self.most.holes)
-    }
 }
 
 impl CountSet {
-    /// Whether a run can have what `goal` asks for.
-    pub(super) fn has(&self, goal: Goal) -> bool {
-        let read = |cap: Option<u32>, wanted: Option<u32>| cap.and(wanted).unwrap_or(0);
-        let wanted = Counts {
-            components: read(self.frame.caps.components, goal.components),
-            holes: read(self.frame.caps.holes, goal.holes),
-        };
+    /// Whether a run can have these counts; one that is not read is left out.
+    pub(super) fn has(&self, counts: Counts) -> bool {
         self.frame
-            .place(wanted)
+            .place(counts)
             .is_some_and(|(row, bit)| self.bits[row * self.frame.words + bit / 64] & (1 << (bit % 64)) != 0)
     }
 }

@@ -43,8 +43,8 @@ pub struct Problem<'a> {
     /// The penalty on repetition, if wanted. It depends on the whole run, so the answer is then the best one
     /// among the runs that the search keeps, as in Zhou 2014 §3.7, and not proven optimal.
     pub variety: Option<Variety>,
-    /// The most labels that the search may hold.
-    pub label_limit: usize,
+    /// The memory that the search may take, in bytes. Beyond it, optimality is given up.
+    pub memory_limit: usize,
 }
 
 /// A sequence that meets all constraints.
@@ -68,8 +68,8 @@ pub enum Unsolved {
     /// No sequence meets the constraints.
     #[error("no sequence of pieces meets the constraints")]
     Infeasible,
-    /// The search was given up.
-    #[error("the search passed {labels} labels")]
+    /// The search passed its memory limit without having found a sequence.
+    #[error("the search passed its memory limit after {labels} partial runs")]
     TooLarge {
         /// Labels made until then.
         labels: usize,

@@ -2,24 +2,26 @@
 //!
 //! Of the states that a piece can be reached in, only those that no other dominates are followed: for one
 //! component the coarsest, for no holes the finest. Most goals that an exemplar cannot meet fall here, without
-//! a look at a single length. Excluded: goals without dominance, which have the graph of [`super::counts`].
+//! a look at a single length. Goals without dominance have the graph of [`super::counts`].
 
-use super::connectivity::Scope;
+use super::connectivity::{Connectivity, Counts};
+use super::counts::{Caps, Ranges, counts, ranges};
+use super::graph::Scope;
 use super::problem::Problem;
-use crate::topology::{Automaton, Dominance, StateId};
+use crate::topology::{Automaton, Dominance, Goal, StateId, Wanted};
 
 /// States that are followed before the question is left open.
 const PATIENCE: usize = 40_000;
 
 /// Whether no run within `scope` of any length meets the automaton's goal. `false` also when that was not found
 /// out.
-pub(super) fn is_never(problem: &Problem<'_>, automaton: &mut Automaton<'_>, scope: &Scope<'_>) -> bool {
+pub(super) fn is_never(problem: &Problem<'_>, automaton: &mut Automaton<'_>, scope: &Scope) -> bool {
     if automaton.dominance() == Dominance::Equal {
         return false;
     }
     let mut met: Vec<Vec<StateId>> = vec![Vec::new(); problem.pieces()];
     let mut queue: Vec<(usize, StateId)> = Vec::new();
-    let starts = scope.firsts.iter().filter_map(|&piece| automaton.start(piece).map(|state| (piece, state)));
+    let starts = scope.starts.iter().filter_map(|&(p, _)| automaton.start(p).map(|state| (p, state)));
     for (piece, state) in starts.collect::<Vec<_>>() {
         meet(automaton, &mut met[piece], state).then(|| queue.push((piece, state)));
     }
@@ -39,6 +41,24 @@ pub(super) fn is_never(problem: &Problem<'_>, automaton: &mut Automaton<'_>, sco
         }
     }
     true
+}
+
+/// Whether no run within `scope` of an accepted length has counts that meet the goal, as far as the graph of
+/// connections knows. `false` also when that was not found out.
+pub(super) fn is_out_of_range(problem: &Problem<'_>, goal: Goal, scope: &Scope) -> bool {
+    let Some(graph) = Connectivity::new(problem, goal, scope) else { return false };
+    let Some(Ranges { least, most }) = ranges(problem, &graph) else { return true };
+    let is_off = |wanted: Option<Wanted>, least, most| {
+        wanted.is_some_and(|wanted| wanted.most() < least || wanted.least() > most)
+    };
+    if is_off(goal.components, least.components, most.components)
+        || is_off(goal.holes, least.holes, most.holes)
+    {
+        return true;
+    }
+    let Some(set) = counts(problem, &graph, Caps::of(goal)) else { return false };
+    let all = |wanted: Option<Wanted>| wanted.map_or(0..=0, |w| w.least()..=w.most());
+    !all(goal.components).any(|components| all(goal.holes).any(|holes| set.has(Counts { components, holes })))
 }
 
 /// Takes up a state unless another dominates it; those that it dominates go.

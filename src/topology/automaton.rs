@@ -8,40 +8,7 @@
 use rustc_hash::FxHashMap;
 
 use super::descriptor::{Descriptor, Topology};
-
-/// Whether the run of pieces has two ends or closes on itself.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Shape {
-    /// Begins and ends without portals.
-    Open,
-    /// The last piece is glued to the first.
-    Ring,
-}
-
-/// The topology that is asked for. A `None` leaves a number free.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub struct Goal {
-    /// Connected components.
-    pub components: Option<u32>,
-    /// Holes; the inside of a closed ring counts as one.
-    pub holes: Option<u32>,
-    /// Whether some component must wind all the way round, which none does in an open run.
-    pub closed_pattern: bool,
-}
-
-impl Goal {
-    /// Whether `topology` meets the goal.
-    pub fn admits(&self, topology: Topology) -> bool {
-        self.components.is_none_or(|n| n == topology.components)
-            && self.holes.is_none_or(|n| n == topology.holes)
-            && (topology.closed_pattern || !self.closed_pattern)
-    }
-
-    /// Whether anything is asked for.
-    pub fn is_free(&self) -> bool {
-        *self == Self::default()
-    }
-}
+use super::goal::{Goal, Shape, Wanted};
 
 /// A state of an [`Automaton`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -59,11 +26,12 @@ impl StateId {
 pub enum Dominance {
     /// Only equal ones.
     Equal,
-    /// With one component wanted and holes free, a coarser partition of the portals: whatever completes a
-    /// finer one to a single component completes the coarser one.
+    /// With one component wanted, a coarser partition of the portals: whatever completes a finer one to a single
+    /// component completes the coarser one. If holes are wanted too, both must have the same Euler
+    /// characteristic: then they end with equally many holes, as these are components − χ.
     Coarser,
-    /// With no holes wanted and components free, a finer one: whatever completes a coarser one without a
-    /// cycle completes the finer one.
+    /// With at most some holes wanted and components free, a finer partition with no more holes: whatever
+    /// completes the coarser one closes no fewer cycles there.
     Finer,
 }
 
@@ -156,15 +124,23 @@ impl<'a> Automaton<'a> {
         Descriptor::new(&wide(left), &wide(right), *closed, i64::from(closed + open))
     }
 
-    /// How the open portals of a run in `state` are connected, if the goal reads it.
+    /// How the open portals of a run in `state` are connected, and the components that are closed, if the goal
+    /// reads them; without holes.
     pub fn connections(&self, state: StateId) -> Option<Descriptor> {
-        self.reads_partition().then(|| self.run(state).connections())
+        self.reads_partition().then(|| self.run(state))
     }
 
     /// The components and the holes that are closed in `state`, 0 where the goal does not read them.
     pub fn closed(&self, state: StateId) -> (u32, u32) {
         let State { closed, holes, .. } = self.states[state.index()];
         (closed, holes)
+    }
+
+    /// The memory that states and transitions take, in bytes, to within a few tens of percent.
+    pub fn bytes(&self) -> usize {
+        let portals = self.states.first().map_or(0, |s| 2 * (s.left.len() + s.right.len()));
+        let state = 2 * (size_of::<State>() + portals + 32) + size_of::<StateId>();
+        self.states.len() * state + (self.steps.capacity() + self.comparisons.capacity()) * 18
     }
 
     fn reads_partition(&self) -> bool {
@@ -177,7 +153,7 @@ impl<'a> Automaton<'a> {
             return None;
         }
         let holes = holes + run.holes();
-        if self.goal.holes.is_some_and(|most| holes > most) {
+        if self.goal.holes.is_some_and(|wanted| holes > wanted.most()) {
             return None;
         }
         let keep_left = self.shape == Shape::Ring;
@@ -193,9 +169,9 @@ impl<'a> Automaton<'a> {
             true => run.open(),
             false => u32::from(left.len() + right.len() > 0),
         };
-        if let Some(target) = self.goal.components {
+        if let Some(wanted) = self.goal.components {
             // Every open component is going to be a part of at least one more closed one.
-            if run.closed() + u32::from(open > 0) > target {
+            if run.closed() + u32::from(open > 0) > wanted.most() {
                 return None;
             }
         }
@@ -222,8 +198,8 @@ impl<'a> Automaton<'a> {
         match self.shape {
             Shape::Open => {
                 right.is_empty()
-                    && self.goal.components.is_none_or(|n| n == *closed)
-                    && self.goal.holes.is_none_or(|n| n == *holes)
+                    && self.goal.components.is_none_or(|wanted| wanted.contains(*closed))
+                    && self.goal.holes.is_none_or(|wanted| wanted.contains(*holes))
             }
             Shape::Ring => {
                 let closes =
@@ -235,10 +211,21 @@ impl<'a> Automaton<'a> {
 
     /// How states at one place compare for this goal.
     pub fn dominance(&self) -> Dominance {
+        let at_most = |wanted: Wanted| wanted.least() == 0;
         match (self.goal.components, self.goal.holes) {
-            (Some(1), None) => Dominance::Coarser,
-            (None, Some(0)) if !self.goal.closed_pattern => Dominance::Finer,
+            (Some(_), _) if self.goal.is_one_component() => Dominance::Coarser,
+            (None, Some(holes)) if at_most(holes) && !self.goal.closed_pattern => Dominance::Finer,
             _ => Dominance::Equal,
+        }
+    }
+
+    /// States at one place of which one may dominate another have the same rank.
+    pub fn rank(&self, state: StateId) -> u32 {
+        let State { closed, open, holes, .. } = &self.states[state.index()];
+        match self.dominance() {
+            Dominance::Equal => state.0,
+            Dominance::Coarser if self.goal.holes.is_some() => (closed + open).wrapping_sub(*holes),
+            Dominance::Coarser | Dominance::Finer => 0,
         }
     }
 
@@ -253,12 +240,18 @@ impl<'a> Automaton<'a> {
             Dominance::Coarser => (a, b),
             Dominance::Finer => (b, a),
         };
-        // A partition that is coarser and not equal has fewer components.
-        if self.states[coarse.index()].open >= self.states[fine.index()].open {
+        if self.rank(a) != self.rank(b) {
             return false;
         }
-        let states = &self.states;
-        let compare = || is_coarser(&states[coarse.index()], &states[fine.index()]);
+        let (of_coarse, of_fine) = (&self.states[coarse.index()], &self.states[fine.index()]);
+        // A partition that is coarser has fewer components, or is equal and has other counters.
+        if of_coarse.open > of_fine.open
+            || of_coarse.closed != of_fine.closed
+            || (self.dominance() == Dominance::Finer && of_fine.holes > of_coarse.holes)
+        {
+            return false;
+        }
+        let compare = || is_coarser(of_coarse, of_fine);
         *self.comparisons.entry(pair(coarse.0, fine.0)).or_insert_with(compare)
     }
 }
@@ -267,12 +260,9 @@ fn pair(high: u32, low: u32) -> u64 {
     u64::from(high) << 32 | u64::from(low)
 }
 
-/// Whether portals that `fine` connects are connected in `coarse` too, all counters being equal.
+/// Whether portals that `fine` connects are connected in `coarse` too.
 fn is_coarser(coarse: &State, fine: &State) -> bool {
-    if (coarse.closed, coarse.holes) != (fine.closed, fine.holes)
-        || coarse.left.len() != fine.left.len()
-        || coarse.right.len() != fine.right.len()
-    {
+    if coarse.left.len() != fine.left.len() || coarse.right.len() != fine.right.len() {
         return false;
     }
     let labels = |s: &State| s.left.iter().chain(&s.right).copied().map(usize::from).collect::<Vec<_>>();

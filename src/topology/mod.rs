@@ -10,7 +10,9 @@
 
 mod automaton;
 mod descriptor;
+mod goal;
 mod union_find;
 
-pub use automaton::{Automaton, Dominance, Goal, Shape, StateId};
+pub use automaton::{Automaton, Dominance, StateId};
 pub use descriptor::{Descriptor, DescriptorError, Topology};
+pub use goal::{Goal, Shape, Wanted, WantedError};

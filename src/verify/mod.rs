@@ -8,10 +8,13 @@
 //! minimum feature and after dilating by half of the minimum gap ([`endures_erosion`],
 //! [`endures_dilation`]); where they would change first is measured by [`widths`].
 //!
+//! [`replay_certificate`] adds the sequence of a report up again, join by join, and holds it against the file.
+//!
 //! Excluded: repair. What cannot be judged (text, images, masks, filters, clip paths) is an error that says
 //! so; what can be judged but is not in order is a fault in the report.
 
 mod ascent;
+mod certificate;
 mod check;
 mod clearance;
 mod drawing;
@@ -21,12 +24,16 @@ mod error;
 mod json;
 mod narrowest;
 mod plain;
+mod replay;
 mod shells;
 mod stl;
 mod svg;
 mod tiling;
 mod walls;
 
+pub use certificate::{
+    CertificateError, CertificateFault, CertificatePlace, CertificateReport, Counted, replay_certificate,
+};
 pub use check::{Expected, Mismatch};
 pub use endure::{endures_dilation, endures_erosion};
 pub use error::VerifyError;

@@ -1,0 +1,317 @@
+//! The cheapest run: walks along the length with growing thresholds.
+//!
+//! A [`Walk`] with a threshold at or above the optimum finds it, and looks only at runs whose estimate is within
+//! the threshold. So the threshold begins at the least estimate there is and grows, each time to where about
+//! twice as many runs come in, until a walk finds a run: then everything cheaper was looked at, and it is the
+//! optimum. The first walks know only the pieces; when they take more than a few labels, the dear estimates are
+//! made.
+//!
+//! Drift is not part of a state until a run has left the band. As long as no run that was dropped for that had
+//! a smaller estimate than the answer, the answer is the optimum; otherwise a run that was dropped may have
+//! stood for one that stays in the band, and the walks are taken again with the drift in the state.
+//!
+//! Past the memory limit a beam finds a run if it can. The last threshold at which nothing was found says how
+//! far from the optimum that may be.
+
+use super::family::{Family, families};
+use super::labels::LABEL_BYTES;
+use super::pass::{Beyond, Passage, Walk};
+use super::problem::{Cost, Problem, Solution, Unsolved};
+use super::reach::{is_never, is_out_of_range};
+use super::table::NEVER;
+use crate::topology::Automaton;
+
+/// Labels after which the dear estimates are made. Most goals near the exemplar's own topology need fewer.
+const SHORT: usize = 20_000;
+/// Labels by which a threshold may grow at least.
+const FEW: usize = 2_000;
+/// Runs of each length that the beam keeps; widened until a run is found.
+const BEAMS: [usize; 3] = [300, 3_000, 30_000];
+
+/// The cheapest run, or ring, that `automaton` accepts.
+pub(super) fn cheapest(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
+    let families = families(problem, automaton.goal().closed_pattern);
+    let threshold = families.iter().map(Family::estimate).min().unwrap_or(NEVER);
+    let search = Cheapest {
+        problem,
+        families,
+        threshold,
+        least: threshold,
+        floor: threshold,
+        best: None,
+        by_drift: false,
+        has_learned: automaton.goal().is_free(),
+        labels: 0,
+    };
+    if problem.variety.is_some() {
+        return search.varied(automaton);
+    }
+    search.solve(automaton)
+}
+
+struct Cheapest<'p> {
+    problem: &'p Problem<'p>,
+    families: Vec<Family>,
+    /// Runs of at most this estimate are looked at.
+    threshold: Cost,
+    /// The least estimate there is.
+    least: Cost,
+    /// No run that meets the constraints costs less.
+    floor: Cost,
+    /// The best so far: pieces, cost, cost with penalties.
+    best: Option<(Vec<usize>, Cost, Cost)>,
+    by_drift: bool,
+    has_learned: bool,
+    labels: usize,
+}
+
+/// What the walks over all families with one threshold came to.
+struct Round {
+    drifted_at: Cost,
+    beyond: Beyond,
+    is_cut_short: bool,
+}
+
+impl Cheapest<'_> {
+    fn solve(mut self, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
+        while self.threshold != NEVER {
+            let limit = self.label_limit(automaton);
+            let limit = if self.has_learned { limit } else { limit.min(SHORT) };
+            let round = self.round(automaton, limit);
+            if round.is_cut_short {
+                if self.has_learned {
+                    return self.beam(automaton);
+                }
+                self.has_learned = true;
+                self.learn(automaton);
+                continue;
+            }
+            let best = self.best.as_ref().map_or(NEVER, |&(_, _, total)| total);
+            if !self.by_drift && round.drifted_at < best && round.drifted_at <= self.threshold {
+                self.by_drift = true;
+                let problem = self.problem;
+                for family in &mut self.families {
+                    family.estimates.learn_drift(problem, automaton, &family.scope);
+                    family.look_again(problem, automaton);
+                }
+                self.raise();
+                continue;
+            }
+            if best <= self.threshold || round.beyond.least() == NEVER {
+                // What is dearer than the threshold is dearer than the best.
+                self.floor = best;
+                break;
+            }
+            self.floor = self.floor.max(round.beyond.least());
+            let many = self.labels > SHORT;
+            self.threshold = round.beyond.next(self.labels.max(FEW));
+            self.has_learned |= many;
+            if self.has_learned {
+                self.learn(automaton);
+                let problem = self.problem;
+                for family in &mut self.families {
+                    if family.estimates.learn_more(problem, automaton, &family.scope) {
+                        family.look_again(problem, automaton);
+                    }
+                }
+            }
+            self.raise();
+        }
+        self.finish(automaton)
+    }
+
+    /// Walks over all members with the threshold.
+    fn round(&mut self, automaton: &mut Automaton<'_>, limit: usize) -> Round {
+        let problem = self.problem;
+        let beyond = Beyond::new(self.threshold, self.threshold - self.least);
+        let mut round = Round { drifted_at: NEVER, beyond, is_cut_short: false };
+        for family in &mut self.families {
+            // Once all rings through a first piece have been seen, it need not be looked at again.
+            let mut allowed = family.scope.allowed.clone();
+            for member in &mut family.members {
+                let ceiling = self.best.as_ref().map_or(NEVER, |&(_, _, total)| total);
+                let mut leave_out = |estimate: Cost| {
+                    let is_late = estimate > self.threshold && estimate < ceiling;
+                    if is_late {
+                        round.beyond.leave_out(estimate);
+                    }
+                    is_late || estimate >= ceiling
+                };
+                if leave_out(member.estimate) {
+                    continue;
+                }
+                let mut table = member.take_table(problem);
+                if leave_out(member.estimate) {
+                    member.keep_table(table);
+                    continue;
+                }
+                let mut scope = member.scope.clone();
+                scope.allowed.clone_from(&allowed);
+                let walk = Walk {
+                    problem,
+                    scope: &scope,
+                    pieces: &mut table,
+                    estimates: &mut family.estimates,
+                    threshold: self.threshold,
+                    ceiling,
+                    by_drift: self.by_drift,
+                    width: usize::MAX,
+                    label_limit: limit.saturating_sub(self.labels),
+                };
+                let beyond = Beyond::new(self.threshold, self.threshold - self.least);
+                let Passage { found, drifted_at, beyond, labels, is_cut_short } = walk.run(automaton, beyond);
+                member.keep_table(table);
+                self.labels += labels;
+                round.drifted_at = round.drifted_at.min(drifted_at);
+                round.beyond.add(&beyond);
+                self.best = found.or(self.best.take());
+                if is_cut_short {
+                    round.is_cut_short = true;
+                    return round;
+                }
+                if family.is_ring && !self.by_drift && drifted_at == NEVER {
+                    allowed[scope.starts[0].0] = false;
+                }
+            }
+        }
+        round
+    }
+
+    /// Finds out what cannot be, and makes the estimates that are dear to make, for the families that the threshold
+    /// has reached; as they learn, it rises, and reaches others.
+    fn learn(&mut self, automaton: &mut Automaton<'_>) {
+        let (problem, goal) = (self.problem, automaton.goal());
+        self.raise();
+        loop {
+            let is_due =
+                |f: &&mut Family| !f.has_learned && f.estimate() <= self.threshold && f.estimate() != NEVER;
+            let Some(family) = self.families.iter_mut().filter(is_due).min_by_key(|f| f.estimate()) else {
+                return;
+            };
+            family.has_learned = true;
+            if is_never(problem, automaton, &family.scope) {
+                family.members.clear();
+            } else {
+                family.learn_topology(problem, automaton);
+                if self.by_drift {
+                    family.estimates.learn_drift(problem, automaton, &family.scope);
+                    family.look_again(problem, automaton);
+                }
+                if !goal.is_free()
+                    && !family.estimates.is_exact()
+                    && is_out_of_range(problem, goal, &family.scope)
+                {
+                    family.members.clear();
+                }
+            }
+            self.raise();
+        }
+    }
+
+    /// Lifts the threshold to the least estimate.
+    fn raise(&mut self) {
+        let least = self.families.iter().map(Family::estimate).min().unwrap_or(NEVER);
+        let best = self.best.as_ref().map_or(NEVER, |&(_, _, total)| total);
+        self.floor = self.floor.max(least.min(best));
+        self.threshold = match (least, best) {
+            (NEVER, NEVER) => NEVER,
+            // Nothing is left but what is known.
+            (least, best) if least >= best => best,
+            (least, _) => self.threshold.max(least),
+        };
+    }
+
+    /// Labels at which the search is given up, in all walks together.
+    fn label_limit(&self, automaton: &Automaton<'_>) -> usize {
+        self.problem.memory_limit.saturating_sub(automaton.bytes()) / LABEL_BYTES
+    }
+
+    /// The best run that a beam finds, member by member.
+    fn beam(mut self, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
+        let limit = (self.problem.memory_limit / LABEL_BYTES).max(SHORT);
+        let mut left = limit;
+        for width in BEAMS {
+            for (family, member) in self.in_order() {
+                if self.best.is_some() || left == 0 {
+                    break;
+                }
+                left = left.saturating_sub(self.walk_member(automaton, (family, member), width, left));
+            }
+        }
+        self.finish(automaton)
+    }
+
+    /// The best run that the paper's table finds with the penalty on repetition (Zhou 2014 §3.7): of the runs of a
+    /// length, as many as can be looked at are kept.
+    fn varied(mut self, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
+        /// Terms of correlations that are added up for one member.
+        const PATIENCE: usize = 400_000_000;
+        /// Members that are looked at, the most promising first.
+        const MEMBERS: usize = 6;
+        self.learn(automaton);
+        let joins: usize =
+            self.problem.steps.iter().map(Vec::len).sum::<usize>() / self.problem.pieces().max(1);
+        let layers = *self.problem.window.end() as usize;
+        let narrowest = self.problem.widths.iter().copied().min().unwrap_or(1) as usize;
+        let terms = layers.saturating_mul(joins.max(1)).saturating_mul(layers / narrowest / 4 + 1);
+        let width = (PATIENCE / terms.max(1)).clamp(8, 400);
+        for width in [width, width * 8] {
+            for at in self.in_order().into_iter().take(MEMBERS) {
+                self.walk_member(automaton, at, width, usize::MAX);
+            }
+            if self.best.is_some() {
+                break;
+            }
+        }
+        self.finish(automaton)
+    }
+
+    /// The members by family and number, the most promising first.
+    fn in_order(&self) -> Vec<(usize, usize)> {
+        let members = |f: usize| (0..self.families[f].members.len()).map(move |m| (f, m));
+        let mut all: Vec<(usize, usize)> = (0..self.families.len()).flat_map(members).collect();
+        all.sort_by_key(|&(f, m)| (self.families[f].members[m].estimate, f, m));
+        all
+    }
+
+    /// Walks over one member without a threshold, keeping so many runs of each length; the labels it took.
+    fn walk_member(
+        &mut self,
+        automaton: &mut Automaton<'_>,
+        (family, member): (usize, usize),
+        width: usize,
+        label_limit: usize,
+    ) -> usize {
+        let family = &mut self.families[family];
+        let member = &mut family.members[member];
+        let mut table = member.take_table(self.problem);
+        let walk = Walk {
+            problem: self.problem,
+            scope: &member.scope,
+            pieces: &mut table,
+            estimates: &mut family.estimates,
+            threshold: NEVER - 1,
+            ceiling: self.best.as_ref().map_or(NEVER, |&(_, _, total)| total),
+            by_drift: self.by_drift,
+            width,
+            label_limit,
+        };
+        let passage = walk.run(automaton, Beyond::new(NEVER - 1, 0));
+        member.keep_table(table);
+        self.labels += passage.labels;
+        self.best = passage.found.or(self.best.take());
+        passage.labels
+    }
+
+    fn finish(self, automaton: &Automaton<'_>) -> Result<Solution, Unsolved> {
+        let Self { best, floor, labels, .. } = self;
+        match best {
+            Some((sequence, cost, total)) => {
+                let gap = total.saturating_sub(floor);
+                Ok(Solution { sequence, cost, gap, labels, states: automaton.len() })
+            }
+            None if floor == NEVER || self.threshold == NEVER => Err(Unsolved::Infeasible),
+            None => Err(Unsolved::TooLarge { labels }),
+        }
+    }
+}

@@ -1,0 +1,347 @@
+//! Admissible estimates: the least cost of completing a run when something is ignored.
+//!
+//! Each is a pass over a smaller graph, exact for what its nodes know; the greatest of them drives the search.
+//! The pieces alone are made for every search. The others are dear, and are made when a short search has not
+//! ended:
+//!
+//! - *exact*: all pairs of piece and state, where they are few. Nothing but the drift is ignored.
+//! - *classes*: for one component. A partition is too much to know of a run, but one of its classes against
+//!   all the others together is not, and an answer must bring that class into contact with the rest before it
+//!   ends. The estimate of a run is the greatest over its classes. With holes wanted too, the Euler
+//!   characteristic is known besides: with one component it says how many holes there are going to be.
+//! - *drifts*: where runs leave the band, the pieces with the drift.
+
+use rustc_hash::FxHashMap;
+
+use super::graph::{Explored, Graph, Joins, Scope, drift_node, of_drifts};
+use super::problem::{Cost, Problem};
+use super::table::{NEVER, Table};
+use crate::topology::{Automaton, Descriptor, Goal, Shape, StateId};
+
+/// Nodes of a graph at which it is given up.
+const NODE_LIMIT: usize = 60_000;
+/// Additions in a pass at which it is not begun: about a second.
+const WORK_LIMIT: usize = 500_000_000;
+/// The portals of classes that are told from the rest: the first that is affordable.
+const CLASS_SIZES: [usize; 4] = [64, 4, 2, 1];
+/// Bytes of a table up to which all its rows are kept.
+pub(super) const TABLE_BUDGET: usize = 256 << 20;
+
+/// The estimates that are dear to make, as far as they were made.
+#[derive(Default)]
+pub(super) struct Estimates {
+    /// Nodes by state and, once runs are told apart by it, drift.
+    exact: Option<(Explored<(StateId, i32)>, Table<Cost>)>,
+    is_by_drift: bool,
+    classes: Option<Classes>,
+    drifts: Option<Table<Cost>>,
+}
+
+impl Estimates {
+    /// Makes the estimates that know topology.
+    pub(super) fn learn_topology(
+        &mut self,
+        problem: &Problem<'_>,
+        automaton: &mut Automaton<'_>,
+        scope: &Scope,
+    ) {
+        if automaton.goal().is_free() {
+            return;
+        }
+        self.exact = exact(problem, automaton, scope, false);
+        if self.exact.is_none() {
+            self.classes = Classes::new(problem, automaton.goal(), scope);
+        }
+    }
+
+    /// Makes the estimates that know the drift, as far as they are affordable.
+    pub(super) fn learn_drift(
+        &mut self,
+        problem: &Problem<'_>,
+        automaton: &mut Automaton<'_>,
+        scope: &Scope,
+    ) {
+        let drifts = 2 * problem.drift_limit as usize + 1;
+        if self.exact.is_some()
+            && let Some(both) = exact(problem, automaton, scope, true)
+        {
+            (self.exact, self.is_by_drift) = (Some(both), true);
+        } else if self.drifts.is_none() && drifts.saturating_mul(problem.pieces()) <= NODE_LIMIT {
+            self.drifts = affordable(problem, of_drifts(problem, scope));
+        }
+    }
+
+    /// Whether the estimate leaves nothing but the drift out of account.
+    pub(super) fn is_exact(&self) -> bool {
+        self.exact.is_some()
+    }
+
+    /// Makes the rows of `length` and of what a step leads to available.
+    pub(super) fn load(&mut self, length: u32) {
+        let Self { exact, classes, drifts, .. } = self;
+        let tables = [
+            exact.as_mut().map(|(_, table)| table),
+            classes.as_mut().map(|classes| &mut classes.table),
+            drifts.as_mut(),
+        ];
+        tables.into_iter().flatten().for_each(|table| table.load(length));
+    }
+
+    /// The estimate for a run of `length` that ends with `piece` in `state`, at a length that is loaded.
+    pub(super) fn rest(
+        &mut self,
+        problem: &Problem<'_>,
+        automaton: &Automaton<'_>,
+        run: (u32, usize, StateId, Option<i32>),
+    ) -> Cost {
+        let (length, piece, state, drift) = run;
+        let mut rest = 0;
+        if let (Some(table), Some(drift)) = (&self.drifts, drift) {
+            rest = drift_node(problem, piece, drift).map_or(NEVER, |node| table.at(length, node));
+        }
+        if let Some((explored, table)) = &self.exact {
+            // What was not reached is from another scope, of which nothing is known here.
+            let node = explored.node(piece, (state, drift.filter(|_| self.is_by_drift).unwrap_or(0)));
+            rest = rest.max(node.map_or(0, |node| table.at(length, node)));
+        }
+        if let Some(classes) = &mut self.classes {
+            rest = rest.max(classes.rest(automaton, length, piece, state));
+        }
+        rest
+    }
+
+    /// Takes what was learned of the classes of the states that were met since into the estimate; whether there
+    /// was enough of it to be worth while.
+    pub(super) fn learn_more(
+        &mut self,
+        problem: &Problem<'_>,
+        automaton: &Automaton<'_>,
+        scope: &Scope,
+    ) -> bool {
+        self.classes.as_mut().is_some_and(|classes| classes.grow(problem, automaton, scope))
+    }
+}
+
+/// The pass over all pairs of piece and state, and drift if asked for, unless they are too many.
+fn exact(
+    problem: &Problem<'_>,
+    automaton: &mut Automaton<'_>,
+    scope: &Scope,
+    by_drift: bool,
+) -> Option<(Explored<(StateId, i32)>, Table<Cost>)> {
+    let starts = scope.starts.iter().filter_map(|&(p, _)| automaton.start(p).map(|s| (p, (s, 0))));
+    let starts: Vec<(usize, (StateId, i32))> = starts.collect();
+    let mut explored = Explored::new(problem, starts, NODE_LIMIT, |piece, &(state, drift), joins| {
+        for step in problem.steps[piece].iter().filter(|s| scope.allowed[s.to]) {
+            let drift = if by_drift { drift.saturating_add(step.rise) } else { 0 };
+            if drift.saturating_abs() > problem.drift_limit {
+                continue;
+            }
+            if let Some(next) = automaton.step(state, step.to) {
+                joins.push((step.to, step.cost, vec![(next, drift)]));
+            }
+        }
+        scope.stop[piece].filter(|_| automaton.accepts(state))
+    })?;
+    let table = affordable(problem, std::mem::take(&mut explored.graph))?;
+    Some((explored, table))
+}
+
+/// The pass over a graph, unless it would take too long.
+fn affordable(problem: &Problem<'_>, graph: Graph) -> Option<Table<Cost>> {
+    let longest = *problem.window.end();
+    let work = graph.all_edges().len().saturating_mul(longest as usize);
+    (work <= WORK_LIMIT && Table::<Cost>::least_bytes(graph.len(), graph.widest(), longest) <= TABLE_BUDGET)
+        .then(|| Table::new(graph, problem.window.clone(), TABLE_BUDGET, |cost| cost))
+}
+
+/// A class against the rest, by number, and the Euler characteristic where it is read.
+type ClassKey = (u32, i32);
+
+/// What is known of a run and its estimate: one class of its partition against all the others.
+struct Classes {
+    goal: Goal,
+    explored: Explored<ClassKey>,
+    table: Table<Cost>,
+    /// Partitions of at most two classes, by number.
+    names: Names,
+    /// The nodes of each piece and state that were met, and how many classes have no node.
+    nodes: FxHashMap<(u32, StateId), (Vec<u32>, usize)>,
+    missing: usize,
+}
+
+/// Numbers of partitions.
+#[derive(Default)]
+struct Names {
+    /// Classes of so many portals are told from the rest; larger ones would be too many.
+    most_portals: usize,
+    ids: FxHashMap<Descriptor, u32>,
+    partitions: Vec<Descriptor>,
+    /// What a join with a piece makes of a partition: the numbers of its classes and what χ becomes more.
+    joins: FxHashMap<(u32, u32), Option<(Vec<u32>, i32)>>,
+}
+
+impl Names {
+    fn name(&mut self, partition: Descriptor) -> u32 {
+        let partitions = &mut self.partitions;
+        *self.ids.entry(partition).or_insert_with_key(|partition| {
+            partitions.push(partition.clone());
+            partitions.len() as u32 - 1
+        })
+    }
+
+    /// Each small class of a run against the others; one entry without classes that are told apart.
+    fn classes(&mut self, run: &Descriptor) -> Vec<u32> {
+        let most_portals = self.most_portals;
+        let portals = run.left().len() + run.right().len();
+        let labels = || run.left().iter().chain(run.right()).map(|&l| u32::from(l));
+        let mut against = |class: Option<u32>| {
+            let told = |labels: &[u16]| -> Vec<u32> {
+                labels.iter().map(|&l| u32::from(Some(u32::from(l)) == class)).collect()
+            };
+            self.name(Descriptor::new(&told(run.left()), &told(run.right()), run.closed(), 0))
+        };
+        let mut found: Vec<u32> = (0..run.open())
+            .filter_map(|class| {
+                let size = labels().filter(|&l| l == class).count();
+                let is_told = size < portals && size.min(portals - size) <= most_portals;
+                is_told.then(|| against(Some(class)))
+            })
+            .collect();
+        // The two classes of a partition are told apart by either.
+        found.sort_unstable();
+        found.dedup();
+        if found.is_empty() {
+            found.push(against(None));
+        }
+        found
+    }
+
+    /// The classes of a run with these connections that `piece` is joined to, and by how much χ grows; `None`
+    /// when something is closed that should not be.
+    fn join(&mut self, problem: &Problem<'_>, id: u32, piece: usize) -> Option<(Vec<u32>, i32)> {
+        if let Some(known) = self.joins.get(&(id, piece as u32)) {
+            return known.clone();
+        }
+        let next = &problem.descriptors[piece];
+        let run = self.partitions[id as usize].join(next).ok();
+        let joined = run.filter(|run| run.closed() + u32::from(run.open() > 0) <= 1).map(|run| {
+            let more = next.euler() - next.left().len() as i64;
+            (self.classes(&run), more as i32)
+        });
+        self.joins.insert((id, piece as u32), joined.clone());
+        joined
+    }
+}
+
+impl Classes {
+    /// The estimate for one component; `None` for other goals, and when it would be too large.
+    fn new(problem: &Problem<'_>, goal: Goal, scope: &Scope) -> Option<Self> {
+        if !goal.is_one_component() {
+            return None;
+        }
+        CLASS_SIZES.iter().find_map(|&most_portals| {
+            let mut names = Names { most_portals, ..Names::default() };
+            let (explored, table) = Self::explore(problem, goal, scope, &mut names, Vec::new())?;
+            Some(Self { goal, explored, table, names, nodes: FxHashMap::default(), missing: 0 })
+        })
+    }
+
+    fn explore(
+        problem: &Problem<'_>,
+        goal: Goal,
+        scope: &Scope,
+        names: &mut Names,
+        seeds: Vec<(usize, ClassKey)>,
+    ) -> Option<(Explored<ClassKey>, Table<Cost>)> {
+        let euler = |run: &Descriptor| if goal.holes.is_some() { run.euler() as i32 } else { 0 };
+        let mut starts = seeds;
+        for &(piece, _) in &scope.starts {
+            let run = &problem.descriptors[piece];
+            if run.closed() + u32::from(run.open() > 0) <= 1 {
+                starts.extend(names.classes(run).into_iter().map(|class| (piece, (class, euler(run)))));
+            }
+        }
+        let expand = |piece: usize, &(class, euler): &ClassKey, joins: &mut Joins<ClassKey>| {
+            for step in problem.steps[piece].iter().filter(|s| scope.allowed[s.to]) {
+                let Some((classes, more)) = names.join(problem, class, step.to) else { continue };
+                let euler = if goal.holes.is_some() { euler + more } else { 0 };
+                if goal.holes.is_some_and(|holes| 1 - i64::from(euler) > i64::from(holes.most())) {
+                    continue;
+                }
+                joins.push((step.to, step.cost, classes.iter().map(|&class| (class, euler)).collect()));
+            }
+            let run = &names.partitions[class as usize];
+            scope.stop[piece].filter(|_| may_stop(goal, problem.shape, run, euler))
+        };
+
+        let explored = Explored::new(problem, starts, NODE_LIMIT, expand);
+
+        let mut explored = explored?;
+        let table = affordable(problem, std::mem::take(&mut explored.graph))?;
+        Some((explored, table))
+    }
+
+    fn rest(&mut self, automaton: &Automaton<'_>, length: u32, piece: usize, state: StateId) -> Cost {
+        let Self { goal, explored, table, names, nodes, missing } = self;
+        let (nodes, _) = nodes.entry((piece as u32, state)).or_insert_with(|| {
+            let keys = keys_of(*goal, automaton, names, state);
+            let found: Vec<u32> =
+                keys.iter().filter_map(|&key| explored.node(piece, key).map(|n| n as u32)).collect();
+            let unknown = keys.len() - found.len();
+            *missing += unknown;
+            (found, unknown)
+        });
+        nodes.iter().map(|&node| table.at(length, node as usize)).max().unwrap_or(0)
+    }
+
+    fn grow(&mut self, problem: &Problem<'_>, automaton: &Automaton<'_>, scope: &Scope) -> bool {
+        if self.missing * 10 <= self.nodes.len() {
+            return false;
+        }
+        let mut unknown: Vec<(u32, StateId)> =
+            self.nodes.iter().filter(|(_, (_, unknown))| *unknown > 0).map(|(&key, _)| key).collect();
+        unknown.sort_unstable();
+        let mut seeds = Vec::new();
+        for (piece, state) in unknown {
+            let keys = keys_of(self.goal, automaton, &mut self.names, state);
+            seeds.extend(keys.into_iter().map(|key| (piece as usize, key)));
+        }
+
+        self.missing = 0;
+        let Some((explored, table)) = Self::explore(problem, self.goal, scope, &mut self.names, seeds) else {
+            return false;
+        };
+        (self.explored, self.table) = (explored, table);
+        self.nodes.clear();
+        true
+    }
+}
+
+/// The classes of a state, each with the Euler characteristic if it is read.
+fn keys_of(goal: Goal, automaton: &Automaton<'_>, names: &mut Names, state: StateId) -> Vec<ClassKey> {
+    let Some(run) = automaton.connections(state) else { return Vec::new() };
+    // Components − χ are the holes so far.
+    let (_, holes) = automaton.closed(state);
+    let euler = match goal.holes {
+        Some(_) => (run.closed() + run.open()) as i32 - holes as i32,
+        None => 0,
+    };
+    names.classes(&run).into_iter().map(|class| (class, euler)).collect()
+}
+
+/// Whether a run may be complete, as far as a partition with fewer classes can tell.
+fn may_stop(goal: Goal, shape: Shape, run: &Descriptor, euler: i32) -> bool {
+    let (topology, euler) = match shape {
+        Shape::Open => match run.right().is_empty() {
+            true => (None, euler),
+            false => return false,
+        },
+        Shape::Ring => match run.close() {
+            Ok(topology) => (Some(topology), euler - run.left().len() as i32),
+            Err(_) => return false,
+        },
+    };
+    topology.is_none_or(|ring| ring.components <= 1 && (ring.closed_pattern || !goal.closed_pattern))
+        && goal.holes.is_none_or(|holes| u32::try_from(1 - euler).is_ok_and(|n| holes.contains(n)))
+}

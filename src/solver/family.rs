@@ -1,0 +1,185 @@
+//! What is searched: open runs, and rings by the cut at which they are opened.
+//!
+//! A ring is a cyclic sequence; where it is opened does not matter to its topology, so it is opened at a cut
+//! with the fewest portals, m. Pieces with fewer than m portals on a side then cannot occur, and with m = 1
+//! the left labels say next to nothing. A family is all rings with the same m; its members are the first
+//! pieces, each with what it costs to close the ring there. Open runs are one family with one member.
+//!
+//! The drift of a ring is measured from where it is opened, so a ring stays in the band if it does from one
+//! of its narrowest cuts.
+
+use super::estimates::{Estimates, TABLE_BUDGET};
+use super::graph::{Scope, of_pieces};
+use super::problem::{Cost, Problem};
+use super::table::{NEVER, Table};
+use crate::topology::{Automaton, Shape};
+
+/// Runs that are looked at together.
+pub(super) struct Family {
+    /// All members in one: the first pieces, and the least cost of stopping after each piece.
+    pub(super) scope: Scope,
+    pub(super) members: Vec<Member>,
+    /// What was learned of all members.
+    pub(super) estimates: Estimates,
+    /// Whether it was.
+    pub(super) has_learned: bool,
+    /// Whether each member is searched by itself, with its own end.
+    pub(super) is_ring: bool,
+}
+
+/// The runs of a family from one first piece (rings), or all of them (open runs).
+pub(super) struct Member {
+    pub(super) scope: Scope,
+    /// No run of this member costs less.
+    pub(super) estimate: Cost,
+    table: Option<Box<Table<Cost>>>,
+}
+
+/// The families of a problem. A closed pattern is not broken anywhere, so with `winds` there is none at an
+/// empty cut.
+pub(super) fn families(problem: &Problem<'_>, winds: bool) -> Vec<Family> {
+    let is_ring = problem.shape == Shape::Ring;
+    scopes(problem, winds).into_iter().map(|scope| Family::new(problem, scope, is_ring)).collect()
+}
+
+/// What the families are looked for in.
+pub(super) fn scopes(problem: &Problem<'_>, winds: bool) -> Vec<Scope> {
+    match problem.shape {
+        Shape::Open => vec![open_scope(problem)],
+        Shape::Ring => narrowest_cuts(problem, winds).into_iter().map(|m| ring_scope(problem, m)).collect(),
+    }
+}
+
+/// All open runs.
+fn open_scope(problem: &Problem<'_>) -> Scope {
+    Scope {
+        starts: problem.begin.iter().enumerate().filter_map(|(p, cost)| cost.map(|c| (p, c))).collect(),
+        allowed: vec![true; problem.pieces()],
+        stop: problem.end.clone(),
+    }
+}
+
+/// The numbers of portals at which rings may have their narrowest cut.
+fn narrowest_cuts(problem: &Problem<'_>, winds: bool) -> Vec<usize> {
+    let mut portals: Vec<usize> = problem.descriptors.iter().map(|d| d.left().len()).collect();
+    portals.sort_unstable();
+    portals.dedup();
+    portals.retain(|&m| m > 0 || !winds);
+    portals
+}
+
+/// All rings with `m` portals at the narrowest cut; closing costs are to the cheapest of the first pieces.
+fn ring_scope(problem: &Problem<'_>, m: usize) -> Scope {
+    let (left, right) =
+        (|p: usize| problem.descriptors[p].left().len(), |p: usize| problem.descriptors[p].right().len());
+    let allowed: Vec<bool> = (0..problem.pieces()).map(|p| left(p) >= m && right(p) >= m).collect();
+    let firsts: Vec<usize> = (0..problem.pieces()).filter(|&p| allowed[p] && left(p) == m).collect();
+    let stop = closing_costs(problem, &firsts, &allowed);
+    Scope { starts: firsts.into_iter().map(|p| (p, 0)).collect(), allowed, stop }
+}
+
+/// What closing a ring after each piece costs, when it began with the cheapest of `firsts`.
+fn closing_costs(problem: &Problem<'_>, firsts: &[usize], allowed: &[bool]) -> Vec<Option<Cost>> {
+    let mut is_first = vec![false; problem.pieces()];
+    firsts.iter().for_each(|&p| is_first[p] = true);
+    (0..problem.pieces())
+        .map(|p| {
+            let closing = problem.steps[p].iter().filter(|s| is_first[s.to]);
+            closing.map(|s| s.cost).min().filter(|_| allowed[p])
+        })
+        .collect()
+}
+
+impl Family {
+    fn new(problem: &Problem<'_>, scope: Scope, is_ring: bool) -> Self {
+        let table = piece_table(problem, &scope);
+        let estimate_of = |&(piece, cost): &(usize, Cost)| estimate(&table, problem, piece, cost);
+        let mut members: Vec<Member> = match is_ring {
+            false => {
+                let estimate = scope.starts.iter().map(estimate_of).min().unwrap_or(NEVER);
+                vec![Member { scope: scope.clone(), estimate, table: None }]
+            }
+            true => scope
+                .starts
+                .iter()
+                .map(|start| {
+                    let estimate = estimate_of(start);
+                    let stop = closing_costs(problem, &[start.0], &scope.allowed);
+                    let scope = Scope { starts: vec![*start], allowed: scope.allowed.clone(), stop };
+                    Member { scope, estimate, table: None }
+                })
+                .collect(),
+        };
+        if let ([only], false) = (&mut members[..], is_ring) {
+            only.table = Some(Box::new(table));
+        }
+        let mut family =
+            Self { scope, members, estimates: Estimates::default(), has_learned: false, is_ring };
+        family.sort();
+        family
+    }
+
+    /// Drops members of which nothing can come, and puts the most promising first.
+    fn sort(&mut self) {
+        self.members.retain(|m| m.estimate != NEVER);
+        self.members.sort_by_key(|m| (m.estimate, m.scope.starts[0].0));
+    }
+
+    /// The least cost that any member may have; [`NEVER`] without members.
+    pub(super) fn estimate(&self) -> Cost {
+        self.members.iter().map(|m| m.estimate).min().unwrap_or(NEVER)
+    }
+
+    /// Makes the estimates that know topology, and looks at the members again in their light.
+    pub(super) fn learn_topology(&mut self, problem: &Problem<'_>, automaton: &mut Automaton<'_>) {
+        self.estimates.learn_topology(problem, automaton, &self.scope);
+        self.look_again(problem, automaton);
+    }
+
+    /// Looks at the members in the light of what has been learned.
+    pub(super) fn look_again(&mut self, problem: &Problem<'_>, automaton: &mut Automaton<'_>) {
+        for member in &mut self.members {
+            let starts = member.scope.starts.iter().map(|&(piece, cost)| {
+                let Some(state) = automaton.start(piece) else { return NEVER };
+                let length = problem.widths[piece];
+                self.estimates.load(length.min(*problem.window.end()));
+                let rest = self.estimates.rest(problem, automaton, (length, piece, state, Some(0)));
+                rest.saturating_add(cost)
+            });
+            member.estimate = member.estimate.max(starts.min().unwrap_or(NEVER));
+        }
+        self.sort();
+    }
+}
+
+impl Member {
+    /// The least cost of completing a run of this member by its last piece. Made once, if it is small.
+    pub(super) fn take_table(&mut self, problem: &Problem<'_>) -> Box<Table<Cost>> {
+        let mut table = self.table.take().unwrap_or_else(|| Box::new(piece_table(problem, &self.scope)));
+        let starts = self.scope.starts.iter().map(|&(piece, cost)| {
+            table.load(problem.widths[piece].min(*problem.window.end()));
+            estimate(&table, problem, piece, cost)
+        });
+        self.estimate = self.estimate.max(starts.min().unwrap_or(NEVER));
+        table
+    }
+
+    /// Keeps the table for another walk, unless many like it would take too much memory.
+    pub(super) fn keep_table(&mut self, table: Box<Table<Cost>>) {
+        const SMALL: usize = 4 << 20;
+        if table.bytes() <= SMALL || self.scope.starts.len() > 1 {
+            self.table = Some(table);
+        }
+    }
+}
+
+fn piece_table(problem: &Problem<'_>, scope: &Scope) -> Table<Cost> {
+    let mut table = Table::new(of_pieces(problem, scope), problem.window.clone(), TABLE_BUDGET / 4, |c| c);
+    table.load(0);
+    table
+}
+
+/// The least cost of a run that begins with `piece` at `cost`.
+fn estimate(table: &Table<Cost>, problem: &Problem<'_>, piece: usize, cost: Cost) -> Cost {
+    table.at(problem.widths[piece], piece).saturating_add(cost)
+}

@@ -1,0 +1,191 @@
+//! Graphs whose paths are runs: what the passes along the length walk on.
+//!
+//! A node is a last piece and whatever else is known of a run that ends with it; an edge is a join. Costs add
+//! up along a path and widths are those of the pieces, so a question about the runs of a length is a question
+//! about paths, which a [`super::table::Table`] answers.
+
+use std::hash::Hash;
+
+use rustc_hash::FxHashMap;
+
+use super::problem::{Cost, Problem};
+
+/// A join.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Edge {
+    pub(super) cost: Cost,
+    pub(super) to: u32,
+    /// The width of the piece that is joined, in bins.
+    pub(super) width: u32,
+    /// Whether this edge and the next are one join to two nodes at once, both of which must be completed.
+    pub(super) and_next: bool,
+}
+
+/// The part of a problem that a search looks at.
+#[derive(Debug, Clone)]
+pub(super) struct Scope {
+    /// First pieces, and what beginning with them costs.
+    pub(super) starts: Vec<(usize, Cost)>,
+    /// The pieces that may occur.
+    pub(super) allowed: Vec<bool>,
+    /// What stopping after each piece costs, where it may stop.
+    pub(super) stop: Vec<Option<Cost>>,
+}
+
+/// A graph whose paths are runs.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Graph {
+    edges: Vec<Edge>,
+    /// Where the edges of each node begin, and where all end.
+    first_edge: Vec<u32>,
+    stops: Vec<Option<Cost>>,
+}
+
+impl Graph {
+    /// A graph without nodes.
+    pub(super) fn new() -> Self {
+        Self { edges: Vec::new(), first_edge: vec![0], stops: Vec::new() }
+    }
+
+    /// Adds a node whose edges are the ones added since the last.
+    pub(super) fn finish_node(&mut self, stop: Option<Cost>) {
+        self.stops.push(stop);
+        self.first_edge.push(self.edges.len() as u32);
+    }
+
+    /// Adds an edge to the node that is going to be finished next.
+    pub(super) fn add(&mut self, edge: Edge) {
+        self.edges.push(edge);
+    }
+
+    /// The number of nodes.
+    pub(super) fn len(&self) -> usize {
+        self.stops.len()
+    }
+
+    /// All edges, by the node that they leave.
+    pub(super) fn all_edges(&self) -> &[Edge] {
+        &self.edges
+    }
+
+    /// The numbers of the edges that leave a node.
+    pub(super) fn edges_of(&self, node: usize) -> std::ops::Range<usize> {
+        self.first_edge[node] as usize..self.first_edge[node + 1] as usize
+    }
+
+    /// What stopping at a node costs, if it may be stopped at.
+    pub(super) fn stop(&self, node: usize) -> Option<Cost> {
+        self.stops[node]
+    }
+
+    /// The greatest width of an edge; 1 without edges.
+    pub(super) fn widest(&self) -> usize {
+        self.edges.iter().map(|e| e.width as usize).max().unwrap_or(1)
+    }
+}
+
+/// The joins of `problem` alone: a node for each piece.
+pub(super) fn of_pieces(problem: &Problem<'_>, scope: &Scope) -> Graph {
+    let mut graph = Graph::new();
+    for piece in 0..problem.pieces() {
+        let is_allowed = scope.allowed[piece];
+        for step in problem.steps[piece].iter().filter(|s| is_allowed && scope.allowed[s.to]) {
+            let width = problem.widths[step.to];
+            graph.add(Edge { cost: step.cost, to: step.to as u32, width, and_next: false });
+        }
+        graph.finish_node(scope.stop[piece].filter(|_| is_allowed));
+    }
+    graph
+}
+
+/// The joins with the drift: a node for each piece and drift within the limit, numbered by [`drift_node`].
+pub(super) fn of_drifts(problem: &Problem<'_>, scope: &Scope) -> Graph {
+    let limit = problem.drift_limit;
+    let mut graph = Graph::new();
+    for piece in 0..problem.pieces() {
+        let is_allowed = scope.allowed[piece];
+        for drift in -limit..=limit {
+            for step in problem.steps[piece].iter().filter(|s| is_allowed && scope.allowed[s.to]) {
+                if let Some(to) = drift_node(problem, step.to, drift.saturating_add(step.rise)) {
+                    let width = problem.widths[step.to];
+                    graph.add(Edge { cost: step.cost, to: to as u32, width, and_next: false });
+                }
+            }
+            graph.finish_node(scope.stop[piece].filter(|_| is_allowed));
+        }
+    }
+    graph
+}
+
+/// The node of a piece and a drift; `None` outside the band.
+pub(super) fn drift_node(problem: &Problem<'_>, piece: usize, drift: i32) -> Option<usize> {
+    let limit = problem.drift_limit;
+    let size = 2 * limit as usize + 1;
+    (drift.abs() <= limit).then(|| piece * size + (drift + limit) as usize)
+}
+
+/// A graph that is explored from its starts, with the nodes found by what is known of a run.
+pub(super) struct Explored<K> {
+    pub(super) graph: Graph,
+    nodes: FxHashMap<(u32, K), u32>,
+    /// The piece and the rest of each node.
+    keys: Vec<(u32, K)>,
+}
+
+/// What can follow at a node: the joins, each with the keys of the nodes that it leads to.
+pub(super) type Joins<K> = Vec<(usize, Cost, Vec<K>)>;
+
+impl<K: Hash + Eq + Clone> Explored<K> {
+    /// Everything that can be reached from `starts`; `None` when that is more than `limit` nodes. `expand` gives
+    /// for a piece and a key what stopping there costs, and the joins.
+    pub(super) fn new(
+        problem: &Problem<'_>,
+        starts: impl IntoIterator<Item = (usize, K)>,
+        limit: usize,
+        mut expand: impl FnMut(usize, &K, &mut Joins<K>) -> Option<Cost>,
+    ) -> Option<Self> {
+        let mut found = Self { graph: Graph::new(), nodes: FxHashMap::default(), keys: Vec::new() };
+        for (piece, key) in starts {
+            found.meet(piece, key);
+        }
+        let mut joins = Joins::new();
+        let mut at = 0;
+        while at < found.keys.len() {
+            if found.keys.len() > limit {
+                return None;
+            }
+            let (piece, key) = found.keys[at].clone();
+            joins.clear();
+            let stop = expand(piece as usize, &key, &mut joins);
+            for (to, cost, keys) in joins.drain(..) {
+                let last = keys.len().saturating_sub(1);
+                for (i, key) in keys.into_iter().enumerate() {
+                    let node = found.meet(to, key);
+                    let width = problem.widths[to];
+                    found.graph.add(Edge { cost, to: node, width, and_next: i < last });
+                }
+            }
+            found.graph.finish_node(stop);
+            at += 1;
+        }
+        Some(found)
+    }
+
+    fn meet(&mut self, piece: usize, key: K) -> u32 {
+        let keys = &mut self.keys;
+        *self.nodes.entry((piece as u32, key)).or_insert_with_key(|key| {
+            keys.push(key.clone());
+            keys.len() as u32 - 1
+        })
+    }
+
+    /// The node of a piece and a key, if it was reached.
+    pub(super) fn node(&self, piece: usize, key: K) -> Option<usize> {
+        self.nodes.get(&(piece as u32, key)).map(|&node| node as usize)
+    }
+
+    /// The last piece of the runs of a node.
+    pub(super) fn piece(&self, node: usize) -> usize {
+        self.keys[node].0 as usize
+    }
+}

@@ -1,0 +1,126 @@
+//! Which lengths sequences have, and whether any of a length stays in the band: passes along the length that
+//! ignore topology and carry sets as bits.
+
+use std::collections::BTreeSet;
+
+use super::family::families;
+use super::graph::Scope;
+use super::problem::Problem;
+use crate::topology::Shape;
+
+/// The lengths up to `longest` of all sequences, whatever their topology and drift.
+pub(super) fn lengths(problem: &Problem<'_>, longest: u32) -> BTreeSet<u32> {
+    let pieces = problem.pieces();
+    // Of each run, the pieces that it may have begun with; an open run's do not matter and are one.
+    let first_of = |p: usize| if problem.shape == Shape::Ring { p } else { 0 };
+    let words = first_of(pieces - 1) / 64 + 1;
+    let bit = |first: usize| (first / 64, 1u64 << (first % 64));
+    let mut stops = vec![0u64; pieces * words];
+    for (piece, stops) in stops.chunks_exact_mut(words).enumerate() {
+        match problem.shape {
+            Shape::Open => stops[0] = u64::from(problem.end[piece].is_some()),
+            Shape::Ring => problem.steps[piece].iter().for_each(|s| stops[bit(s.to).0] |= bit(s.to).1),
+        }
+    }
+    let layer = pieces * words;
+    let mut firsts = vec![0u64; (longest as usize + 1) * layer];
+    for piece in 0..pieces {
+        let may_begin = problem.shape == Shape::Ring || problem.begin[piece].is_some();
+        if may_begin && problem.widths[piece] <= longest {
+            let (word, bit) = bit(first_of(piece));
+            firsts[problem.widths[piece] as usize * layer + piece * words + word] |= bit;
+        }
+    }
+    let mut found = BTreeSet::new();
+    for length in 1..=longest as usize {
+        let (here, longer_ones) = firsts[length * layer..].split_at_mut(layer);
+        for piece in 0..pieces {
+            let met = &here[piece * words..][..words];
+            if met.iter().all(|&w| w == 0) {
+                continue;
+            }
+            if met.iter().zip(&stops[piece * words..]).any(|(a, b)| a & b != 0) {
+                found.insert(length as u32);
+            }
+            for step in &problem.steps[piece] {
+                let at = (problem.widths[step.to] as usize - 1) * layer + step.to * words;
+                if let Some(to) = longer_ones.get_mut(at..at + words) {
+                    to.iter_mut().zip(met).for_each(|(to, &from)| *to |= from);
+                }
+            }
+        }
+    }
+    found
+}
+
+/// The widest band for which drifts are told apart, in units; beyond, the question is left open.
+const WIDEST: i32 = 4096;
+
+/// Whether some sequence of an accepted length stays in the band, whatever its topology; `None` when that was not
+/// found out.
+pub(super) fn stays_in_band(problem: &Problem<'_>) -> Option<bool> {
+    let longest = *problem.window.end() as usize;
+    if problem.drift_limit > WIDEST {
+        return None;
+    }
+    Some(
+        families(problem, false)
+            .iter()
+            .any(|family| family.members.iter().any(|member| has_level_run(problem, &member.scope, longest))),
+    )
+}
+
+fn has_level_run(problem: &Problem<'_>, scope: &Scope, longest: usize) -> bool {
+    let pieces = problem.pieces();
+    let limit = problem.drift_limit.max(0) as usize;
+    let bits = 2 * limit + 1;
+    let words = bits.div_ceil(64);
+    // An odd number of bits never fills its last word.
+    let last = !(u64::MAX << (bits % 64));
+    let layers = problem.widths.iter().max().map_or(1, |&w| w as usize) + 1;
+    let mut drifts = vec![0u64; layers * pieces * words];
+    let place = |length: usize, piece: usize| (length % layers * pieces + piece) * words;
+    for &(first, _) in &scope.starts {
+        drifts[place(problem.widths[first] as usize, first) + limit / 64] |= 1 << (limit % 64);
+    }
+    let mut here = vec![0u64; words];
+    for length in 1..=longest {
+        for piece in 0..pieces {
+            let met = &mut drifts[place(length, piece)..][..words];
+            if met.iter().all(|&w| w == 0) {
+                continue;
+            }
+            if scope.stop[piece].is_some() && problem.window.contains(&(length as u32)) {
+                return true;
+            }
+            here.copy_from_slice(met);
+            met.fill(0);
+            for step in problem.steps[piece].iter().filter(|s| scope.allowed[s.to]) {
+                let longer = length + problem.widths[step.to] as usize;
+                if longer <= longest {
+                    let to = &mut drifts[place(longer, step.to)..][..words];
+                    add_moved(to, &here, step.rise);
+                    to[words - 1] &= last;
+                }
+            }
+        }
+    }
+    false
+}
+
+/// Adds to `set` what `other` holds, moved by `by`; what leaves at either end is lost.
+fn add_moved(set: &mut [u64], other: &[u64], by: i32) {
+    let (words, bits) = (by.unsigned_abs() as usize / 64, by.unsigned_abs() % 64);
+    let word = |at: Option<usize>| at.and_then(|at| other.get(at)).copied().unwrap_or(0);
+    for (w, to) in set.iter_mut().enumerate() {
+        let (near, far) = match by >= 0 {
+            true => (word(w.checked_sub(words)), word(w.checked_sub(words + 1))),
+            false => (word(Some(w + words)), word(Some(w + words + 1))),
+        };
+        *to |= match (by >= 0, bits) {
+            (_, 0) => near,
+            (true, bits) => near << bits | far >> (64 - bits),
+            (false, bits) => near >> bits | far << (64 - bits),
+        };
+    }
+}

@@ -1,0 +1,268 @@
+//! One walk along the length: every run whose estimate is within a threshold.
+//!
+//! Runs of each length are extended before those of greater lengths, so that only as many lengths as the widest
+//! piece has bins are open at a time, and what no open run goes back to can be dropped. Runs whose estimate
+//! passes the threshold are left out and counted, which says what the next threshold should be.
+
+use rustc_hash::FxHashMap;
+
+use super::estimates::Estimates;
+use super::graph::Scope;
+use super::labels::{Labels, NONE, Run};
+use super::problem::{Cost, Problem};
+use super::table::{NEVER, Table};
+use super::variety::{Variety, extend};
+use crate::topology::Automaton;
+
+/// What to walk over.
+pub(super) struct Walk<'w> {
+    pub(super) problem: &'w Problem<'w>,
+    pub(super) scope: &'w Scope,
+    /// The least cost of completing a run by its last piece.
+    pub(super) pieces: &'w mut Table<Cost>,
+    /// What else is known of it.
+    pub(super) estimates: &'w mut Estimates,
+    /// Only runs of at most this estimate are looked at.
+    pub(super) threshold: Cost,
+    /// Only runs that cost less in all are of interest.
+    pub(super) ceiling: Cost,
+    /// Whether runs that have drifted differently are told apart.
+    pub(super) by_drift: bool,
+    /// The most promising runs of each length are extended, and no others.
+    pub(super) width: usize,
+    /// Labels at which the walk is given up.
+    pub(super) label_limit: usize,
+}
+
+/// What a walk came to.
+pub(super) struct Passage {
+    /// The cheapest run that meets all constraints: its pieces, its cost in all, and that with the penalty for
+    /// repetition.
+    pub(super) found: Option<(Vec<usize>, Cost, Cost)>,
+    /// The least estimate of a run that left the band.
+    pub(super) drifted_at: Cost,
+    /// Estimates of the runs that were left out.
+    pub(super) beyond: Beyond,
+    pub(super) labels: usize,
+    /// Whether the walk was given up.
+    pub(super) is_cut_short: bool,
+}
+
+/// How the estimates of runs that were left out are distributed above the threshold.
+#[derive(Debug, Clone)]
+pub(super) struct Beyond {
+    threshold: Cost,
+    /// The width of a bucket.
+    width: Cost,
+    buckets: [u32; 128],
+    /// The least.
+    least: Cost,
+}
+
+impl Beyond {
+    /// No runs yet, above a threshold so far over the least estimate there is.
+    pub(super) fn new(threshold: Cost, slack: Cost) -> Self {
+        Self { threshold, width: (slack + 1_000_000) / 64, buckets: [0; 128], least: NEVER }
+    }
+
+    /// Counts a run that was left out.
+    pub(super) fn leave_out(&mut self, estimate: Cost) {
+        self.least = self.least.min(estimate);
+        let bucket = (estimate - self.threshold) / self.width;
+        if let Some(bucket) = self.buckets.get_mut(bucket as usize) {
+            *bucket = bucket.saturating_add(1);
+        }
+    }
+
+    /// Adds what another walk with the same threshold left out.
+    pub(super) fn add(&mut self, other: &Self) {
+        self.least = self.least.min(other.least);
+        for (a, b) in self.buckets.iter_mut().zip(other.buckets) {
+            *a = a.saturating_add(b);
+        }
+    }
+
+    /// A threshold that lets in about `labels` of the runs that were left out; [`NEVER`] when there were none.
+    pub(super) fn next(&self, labels: usize) -> Cost {
+        if self.least == NEVER {
+            return NEVER;
+        }
+        let mut sum = 0usize;
+        let mut at = self.threshold;
+        for &count in &self.buckets {
+            sum += count as usize;
+            if sum > labels {
+                break;
+            }
+            at += self.width;
+        }
+        at.max(self.least)
+    }
+
+    /// The least estimate of a run that was left out; [`NEVER`] when there was none.
+    pub(super) fn least(&self) -> Cost {
+        self.least
+    }
+}
+
+impl Walk<'_> {
+    /// Walks from the shortest run to the longest.
+    pub(super) fn run(mut self, automaton: &mut Automaton<'_>, beyond: Beyond) -> Passage {
+        let problem = self.problem;
+        let widest = problem.widths.iter().copied().max().unwrap_or(1);
+        let longest = *problem.window.end();
+        let mut labels = Labels::new(widest, self.by_drift);
+        let mut passage = Passage { found: None, drifted_at: NEVER, beyond, labels: 0, is_cut_short: false };
+        let mut best: Option<(Cost, Cost, u32)> = None;
+        let mut repetition = problem.variety.map(Repetition::new);
+        self.load(0);
+        for &(piece, cost) in &self.scope.starts {
+            // Starts are met at their own lengths, which may be in another block.
+            let length = problem.widths[piece];
+            self.load(length.min(longest));
+            if let Some(state) = automaton.start(piece) {
+                let run = Run { length, piece: piece as u32, state, drift: 0, cost, weight: cost };
+                self.meet(automaton, &mut labels, &mut passage, repetition.as_mut(), run, NONE);
+            }
+        }
+        for length in 1..=longest {
+            let met = labels.advance();
+            let mut members: Vec<u32> = met.iter().copied().filter(|&at| !labels.is_superseded(at)).collect();
+            if members.is_empty() {
+                continue;
+            }
+            self.load(length);
+            if members.len() > self.width {
+                let estimate = |at: &u32| {
+                    let label = labels.get(*at);
+                    label.weight + self.pieces.at(length, label.piece as usize)
+                };
+                members.sort_by_cached_key(|at| (estimate(at), *at));
+                members.truncate(self.width);
+                passage.is_cut_short = true;
+            }
+            if repetition.is_none() {
+                let kept = labels.sweep(best.map(|(.., at)| at), &mut members);
+                best = best.zip(kept).map(|((total, cost, _), at)| (total, cost, at));
+            }
+            let may_stop = problem.window.contains(&length);
+            for at in members {
+                let label = labels.get(at);
+                let piece = label.piece as usize;
+                if let Some(stop) =
+                    self.scope.stop[piece].filter(|_| may_stop && automaton.accepts(label.state))
+                {
+                    let (cost, total) = (label.cost + stop, label.weight + stop);
+                    if total < self.ceiling && best.is_none_or(|(known, ..)| total < known) {
+                        best = Some((total, cost, at));
+                    }
+                }
+                for step in problem.steps[piece].iter().filter(|s| self.scope.allowed[s.to]) {
+                    let length = length + problem.widths[step.to];
+                    if length > longest {
+                        continue;
+                    }
+                    let cost = label.cost + step.cost;
+                    let rest = self.pieces.at(length, step.to);
+                    if rest == NEVER || cost.saturating_add(rest) >= self.ceiling {
+                        continue;
+                    }
+                    if cost + rest > self.threshold {
+                        passage.beyond.leave_out(cost + rest);
+                        continue;
+                    }
+                    let Some(state) = automaton.step(label.state, step.to) else { continue };
+                    let drift = label.drift.saturating_add(step.rise);
+                    let run = Run { length, piece: step.to as u32, state, drift, cost, weight: cost };
+                    self.meet(automaton, &mut labels, &mut passage, repetition.as_mut(), run, at);
+                }
+            }
+            if let Some(repetition) = &mut repetition {
+                repetition.forget(&met);
+            }
+            if labels.made > self.label_limit {
+                passage.is_cut_short = true;
+                break;
+            }
+        }
+        passage.labels = labels.made;
+        passage.found = best.map(|(total, cost, at)| (labels.sequence(at), cost, total));
+        passage
+    }
+
+    fn load(&mut self, length: u32) {
+        self.pieces.load(length);
+        self.estimates.load(length);
+    }
+
+    /// Takes up a run unless its estimate is beyond the threshold or another can stand for it.
+    fn meet(
+        &mut self,
+        automaton: &mut Automaton<'_>,
+        labels: &mut Labels,
+        passage: &mut Passage,
+        repetition: Option<&mut Repetition>,
+        run: Run,
+        parent: u32,
+    ) {
+        let Run { length, state, drift, cost, .. } = run;
+        let piece = run.piece as usize;
+        let plain = self.pieces.at(length, piece);
+        let known_drift = self.by_drift.then_some(drift);
+        let rest =
+            plain.max(self.estimates.rest(self.problem, automaton, (length, piece, state, known_drift)));
+        let mut estimate = cost.saturating_add(rest);
+        let correlations = repetition.as_ref().map(|r| r.correlations(labels, parent, piece));
+        let mut run = run;
+        if let (Some(r), Some(correlations)) = (&repetition, &correlations) {
+            let penalty = r.variety.penalty(correlations);
+            estimate = estimate.saturating_add(penalty);
+            run.weight = cost.saturating_add(penalty);
+        }
+        if rest == NEVER || estimate >= self.ceiling {
+            return;
+        }
+        if estimate > self.threshold {
+            passage.beyond.leave_out(estimate);
+            return;
+        }
+        if drift.saturating_abs() > self.problem.drift_limit {
+            passage.drifted_at = passage.drifted_at.min(estimate);
+            return;
+        }
+        let met = labels.add(automaton, run, parent);
+        if let (Some(at), Some(r), Some(correlations)) = (met, repetition, correlations) {
+            r.keep(at, correlations);
+        }
+    }
+}
+
+/// The correlations of the runs that are open, when variety is asked for.
+struct Repetition {
+    variety: Variety,
+    correlations: FxHashMap<u32, Vec<f32>>,
+}
+
+impl Repetition {
+    fn new(variety: Variety) -> Self {
+        Self { variety, correlations: FxHashMap::default() }
+    }
+
+    /// Of the run `parent` with `piece` after it.
+    fn correlations(&self, labels: &Labels, parent: u32, piece: usize) -> Vec<f32> {
+        match self.correlations.get(&parent) {
+            Some(before) => extend(before, piece, labels.backwards(parent)),
+            None => Vec::new(),
+        }
+    }
+
+    fn keep(&mut self, at: u32, correlations: Vec<f32>) {
+        self.correlations.insert(at, correlations);
+    }
+
+    fn forget(&mut self, passed: &[u32]) {
+        passed.iter().for_each(|at| {
+            self.correlations.remove(at);
+        });
+    }
+}
