@@ -13,7 +13,7 @@ use glam::DVec2;
 use openwork::domain::{BandMap, CurveSpec, PlanarCurve};
 use openwork::exemplar::{Exemplar, Limits, ReadOptions};
 use openwork::fabricate::snapped_to_f32;
-use openwork::fit::{FitOptions, Outline, StitchMethod};
+use openwork::fit::{FitOptions, Outline, Sides, StitchMethod};
 use openwork::job::{Band, BandBuilder, DEFAULT_MEMORY_LIMIT, Output, Plan, PlanOptions, plan};
 use openwork::pieces::{Catalogue, CostWeights};
 use openwork::planar::{Contour, Grid, Region, Tolerances};
@@ -76,7 +76,7 @@ fn catalogue(exemplar: &str) -> Catalogue {
 }
 
 fn solve(catalogue: &Catalogue, shape: Shape, length_mm: f64) -> Plan {
-    let goal = Goal { components: Some(1), holes: None, closed_pattern: shape == Shape::Ring };
+    let goal = Goal { components: Some(1.into()), holes: None, closed_pattern: shape == Shape::Ring };
     let options = PlanOptions {
         shape,
         length_mm,
@@ -97,6 +97,7 @@ fn fit(catalogue: &Catalogue, plan: &Plan, length_mm: f64) -> Outline {
         is_ring: true,
         chord_mm: 0.125 * CHORD_MM,
         stitch: StitchMethod::default(),
+        sides: Sides::Free,
     };
     Outline::new(catalogue, &plan.sequence, &options).expect("a plan is a run of the catalogue")
 }

@@ -15,7 +15,8 @@ const SPACE: f32 = 10.0;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
-    let sheet = arguments.next().map_or_else(|| std::env::temp_dir().join("contact_sheet.png"), PathBuf::from);
+    let sheet =
+        arguments.next().map_or_else(|| std::env::temp_dir().join("contact_sheet.png"), PathBuf::from);
     let columns: usize = arguments.next().as_deref().unwrap_or("3").parse()?;
     let mut files: Vec<PathBuf> = arguments.map(PathBuf::from).collect();
     if files.is_empty() {

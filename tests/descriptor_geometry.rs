@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
 use glam::DVec2;
-use openwork::fit::{FitOptions, Outline, OutlineContour, StitchMethod};
+use openwork::fit::{FitOptions, Outline, OutlineContour, Sides, StitchMethod};
 use openwork::pieces::{Catalogue, CostWeights};
 use openwork::planar::{Contour, FillRule, Grid, GridPoint, Region, Tolerances};
 use openwork::reeb::{Cut, ReebGraph, Slicing, SlicingRule};
@@ -250,7 +250,7 @@ proptest! {
         let length_mm = natural_mm * stretch;
         // On a circle the height has to be small against the radius.
         let height_mm = if is_ring { 0.2 * length_mm / TAU } else { catalogue.height_mm() };
-        let options = FitOptions { length_mm, height_mm, is_ring, chord_mm: 1e-3, stitch };
+        let options = FitOptions { length_mm, height_mm, is_ring, chord_mm: 1e-3, stitch, sides: Sides::Free };
         let outline = Outline::new(&catalogue, &sequence, &options).unwrap();
         let topology = predicted(&catalogue, &sequence, is_ring);
         let winds = outline.contours.iter().any(|c| c.winding != 0);

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use openwork::domain::CurveSpec;
 use openwork::exemplar::{Exemplar, Limits, ReadOptions};
-use openwork::fit::{FitOptions, Outline, Prepared, StitchMethod};
+use openwork::fit::{FitOptions, Outline, Prepared, Sides, StitchMethod};
 use openwork::job::{Band, BandBuilder};
 use openwork::pieces::{Catalogue, CostWeights};
 use openwork::planar::Tolerances;
@@ -82,6 +82,7 @@ fn pieces_prepared_for_another_run_give_the_same_outline() {
         is_ring: false,
         chord_mm: 1e-3,
         stitch: StitchMethod::Lri,
+        sides: Sides::Free,
     };
     let mut prepared = Prepared::new();
     Outline::prepared(&catalogue, &natural, &fit, &mut prepared).unwrap();

@@ -15,7 +15,7 @@ use std::time::Instant;
 
 use openwork::domain::CurveSpec;
 use openwork::exemplar::{Exemplar, Limits, ReadOptions};
-use openwork::fit::{Bent, FitOptions, Outline, Placed, Prepared, StitchMethod};
+use openwork::fit::{Bent, FitOptions, Outline, Placed, Prepared, Sides, StitchMethod};
 use openwork::job::BandBuilder;
 use openwork::pieces::{Catalogue, CostWeights};
 use openwork::planar::{Region, Tolerances};
@@ -74,6 +74,7 @@ impl Case {
             is_ring: false,
             chord_mm: 0.125 * CHORD_MM,
             stitch,
+            sides: Sides::Free,
         }
     }
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 
 use super::values;
-use crate::domain::CurveSpec;
+use crate::domain::{CurveSpec, RectSize};
 use crate::job::{KeptRange, SlicingChoice, StitchMethod};
 
 /// Ornament that can be made: new pattern from one SVG ornament, with exactly the components and holes you ask
@@ -22,6 +22,9 @@ pub(super) enum Command {
     /// Synthesize a band along a line, a circle or any path, and write it as SVG, STL or PNG
     #[command(after_help = BAND_HELP)]
     Band(Box<BandArguments>),
+    /// Synthesize a rectangle, in both directions, and write it as SVG, STL or PNG
+    #[command(after_help = RECT_HELP)]
+    Rect(Box<RectArguments>),
     /// Show how an exemplar is understood: critical points, cuts, pieces, portals, descriptors
     #[command(after_help = ANALYZE_HELP)]
     Analyze(AnalyzeArguments),
@@ -48,6 +51,23 @@ Examples:
     openwork band lace.svg --along path:collar.svg#edge --min-feature 0.4mm -o collar.stl
   A stencil from an ornament of many parts: one piece, nothing that falls out:
     openwork band foliage.svg --along line:240mm --components 1 --holes 0 --bridge 1mm -o stencil.svg
+
+  Twelve different bands of the same ornament:
+    openwork band vine.svg --along line:120mm --components 1 --count 12 --seed 7 -o vine.svg
+
+Exit codes: 0 done; 2 the input or an argument is wrong; 3 the constraints cannot be met;
+4 the result failed verification and nothing was written; 1 a bug of ours.";
+
+const RECT_HELP: &str = "\
+Lengths take mm, cm, in, pt or px (96 to the inch); a bare number is millimetres.
+The pattern is made along the width, turned by 90 degrees and used as the exemplar along the height. What is
+asked for holds for the finished rectangle, which the ink fills from side to side.
+
+Examples:
+  A panel in one piece:
+    openwork rect vine.svg --size 120x80mm --components 1 -o panel.svg -o panel.stl
+  With smaller rows, and a report of what was tried:
+    openwork rect scroll.svg --size 120x80mm --width 8mm -o panel.svg --report panel.json
 
 Exit codes: 0 done; 2 the input or an argument is wrong; 3 the constraints cannot be met;
 4 the result failed verification and nothing was written; 1 a bug of ours.";
@@ -92,7 +112,44 @@ pub(super) struct BandArguments {
     /// The curve: line:120mm, circle:65mm (diameter), path:FILE.svg or path:FILE.svg#id
     #[arg(long, value_name = "SPEC", value_parser = values::curve)]
     pub(super) along: CurveSpec,
-    /// Height of the band; the exemplar is scaled to it [default: the exemplar's own height]
+    /// The pattern must go all the way round a closed curve
+    #[arg(long)]
+    pub(super) closed_pattern: bool,
+    /// Round corners of the path to this radius [default: a corner is an error]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    pub(super) round: Option<f64>,
+    /// The K cheapest bands, none twice; files are numbered, as out-01.svg
+    #[arg(long, value_name = "K", conflicts_with_all = ["seed", "count", "temperature"], allow_negative_numbers = true)]
+    pub(super) best: Option<u16>,
+    /// So many different bands drawn at random; files are numbered, as out-01.svg
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub(super) count: Option<u16>,
+    /// T: bands are drawn with probability in proportion to exp(-cost/T), so that more is wilder [default: 0.16]
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    pub(super) temperature: Option<f64>,
+    #[command(flatten)]
+    pub(super) pattern: PatternArguments,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct RectArguments {
+    /// The ornament to learn from (SVG)
+    pub(super) exemplar: PathBuf,
+    /// Width and height, such as 120x80mm
+    #[arg(long, value_name = "WxH", value_parser = values::size, allow_hyphen_values = true)]
+    pub(super) size: RectSize,
+    /// Make opposite sides match, so that copies join
+    #[arg(long)]
+    pub(super) tile: bool,
+    #[command(flatten)]
+    pub(super) pattern: PatternArguments,
+}
+
+/// What a band and a rectangle share.
+#[derive(Debug, Args)]
+pub(super) struct PatternArguments {
+    /// Height that the exemplar is scaled to: of the band, or of a rectangle's rows [default: the exemplar's own
+    /// height, in a rectangle at most a quarter of it]
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(super) width: Option<f64>,
     /// So many connected components: a number, a range with both ends as 2..5, or any
@@ -101,9 +158,6 @@ pub(super) struct BandArguments {
     /// So many holes: a number, a range or any; the inside of a closed ring is one
     #[arg(long, value_name = "M", value_parser = values::wanted, default_value = "any", hide_default_value = true, allow_negative_numbers = true)]
     pub(super) holes: values::Count,
-    /// The pattern must go all the way round a closed curve
-    #[arg(long)]
-    pub(super) closed_pattern: bool,
     /// Where the exemplar is cut: reeb, reeb:LENGTH or uniform:T
     #[arg(long, value_name = "RULE", value_parser = values::slicing, default_value = "reeb")]
     pub(super) slicing: SlicingChoice,
@@ -114,7 +168,8 @@ pub(super) struct BandArguments {
     /// Use every piece left for right as well
     #[arg(long)]
     pub(super) mirror: bool,
-    /// Another seed may give another band near the optimum [default: the optimum]
+    /// A band drawn at random, the same for the same seed; in a rectangle, what the search prefers
+    /// [default: the optimum]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(super) seed: Option<u64>,
     /// Weight of the autocorrelation: more gives less repetition
@@ -129,6 +184,9 @@ pub(super) struct BandArguments {
     /// How pieces are bent to meet: warp, or lri (linear rotation-invariant deformation)
     #[arg(long, value_name = "METHOD", value_parser = values::stitch, default_value_t)]
     pub(super) stitch: StitchMethod,
+    /// Memory that the search may take before it gives optimality up, as 512MB or 2GB
+    #[arg(long, value_name = "SIZE", value_parser = values::memory, default_value = "2GB")]
+    pub(super) memory_limit: usize,
     /// Thickness of the solid
     #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "2mm", allow_hyphen_values = true)]
     pub(super) thickness: f64,
@@ -136,9 +194,6 @@ pub(super) struct BandArguments {
     /// by slits of this width, as few and as short as can be [default: refuse]
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(super) bridge: Option<f64>,
-    /// Round corners of the path to this radius [default: a corner is an error]
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
-    pub(super) round: Option<f64>,
     #[command(flatten)]
     pub(super) tolerances: ToleranceArguments,
     /// A file to write: .svg, .stl or .png; may be repeated; - is SVG on standard output

@@ -14,6 +14,7 @@ macro_rules! say {
 
 mod args;
 mod progress;
+mod rect;
 mod run;
 mod values;
 

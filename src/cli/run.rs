@@ -1,26 +1,29 @@
 //! From arguments to results and messages.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use thiserror::Error;
 
 use super::args::{
-    AnalyzeArguments, Arguments, BandArguments, Command, ExtrudeArguments, ToleranceArguments,
-    VerifyArguments,
+    AnalyzeArguments, Arguments, BandArguments, Command, ExtrudeArguments, PatternArguments,
+    ToleranceArguments, VerifyArguments,
 };
 use super::progress::Progress;
+use super::rect;
 use crate::analysis::{Analysis, AnalysisError};
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
 use crate::export;
 use crate::job::{
-    BandBuilder, BandReport, ExtrudeBridges, Format, JobError, Output, READ_SHARE, SlicingChoice, Target,
-    extrude,
+    BandBuilder, BandReport, Choice, DEFAULT_TEMPERATURE, ExtrudeBridges, Format, JobError, Output,
+    READ_SHARE, SlicingChoice, Target, extrude,
 };
 use crate::pieces::CostWeights;
 use crate::planar::{Tolerances, TolerancesError};
 use crate::reeb::{SlicingError, SlicingRule};
-use crate::verify::{self, CertificateError, CertificateReport, Counted, Expected, Mismatch, VerifyError};
+use crate::verify::{
+    self, CertificateError, CertificateReport, Counted, Expected, Mismatch, Narrowest, VerifyError,
+};
 
 /// Whatever ends the program with a message.
 #[derive(Debug, Error)]
@@ -70,6 +73,7 @@ impl CliError {
 pub(super) fn run(arguments: Arguments) -> Result<ExitCode, CliError> {
     match arguments.command {
         Command::Band(band) => run_band(&band),
+        Command::Rect(arguments) => rect::run_rect(&arguments),
         Command::Analyze(analyze) => run_analyze(&analyze),
         Command::Extrude(extrude) => run_extrude(&extrude),
         Command::Verify(verify) => run_verify(&verify),
@@ -98,33 +102,103 @@ fn refuse_json_beside(json: bool, outputs: &[Output]) -> Result<(), JobError> {
 }
 
 fn run_band(arguments: &BandArguments) -> Result<ExitCode, CliError> {
+    let (outputs, report_target) = destinations(&arguments.pattern)?;
+    let quiet = arguments.pattern.quiet;
+    let job = builder(arguments)?.build()?;
+    job.check_outputs(&outputs, report_target.as_ref())?;
+    let progress = Progress::new(quiet);
+    let bands = job.run_all(&mut |stage| progress.show(stage))?;
+    let wanted = arguments.best.or(arguments.count);
+    let mut reports = Vec::new();
+    for (number, band) in (1..).zip(&bands) {
+        let numbered = |target: &Target| wanted.map_or_else(|| target.clone(), |_| target.numbered(number));
+        let outputs: Vec<Output> = outputs.iter().map(|o| o.with_target(numbered(o.target()))).collect();
+        let report = report_target.as_ref().map(numbered);
+        reports.push(band.write(&outputs, report.as_ref(), &mut |stage| progress.show(stage))?);
+    }
+    drop(progress);
+    if !quiet {
+        reports.iter().for_each(say_band);
+        if let Some(wanted) = wanted.filter(|&wanted| reports.len() < usize::from(wanted)) {
+            say!("note: {} different band(s) were found of the {wanted} that were asked for", reports.len());
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Which sequences are taken, and whether their number is of interest.
+fn choice(arguments: &BandArguments) -> Result<Choice, JobError> {
+    let refuse = |option: &'static str, found: &str, wanted: &str| JobError::Option {
+        option,
+        found: found.to_owned(),
+        wanted: wanted.to_owned(),
+    };
+    let many = arguments.best.map(|n| ("--best", n)).or(arguments.count.map(|n| ("--count", n)));
+    if let Some((option, 0)) = many {
+        return Err(refuse(option, "0 bands are none", "ask for 1 or more"));
+    }
+    let is_stream = |path: &PathBuf| path.as_os_str() == "-";
+    let pattern = &arguments.pattern;
+    if let Some((option, _)) = many
+        && pattern.output.iter().chain(&pattern.report).any(is_stream)
+    {
+        return Err(refuse(option, "several bands do not fit on standard output", "give --output a name"));
+    }
+    if arguments.temperature.is_some_and(|t| !(1e-3..=1e3).contains(&t)) {
+        return Err(refuse("--temperature", "it is out of range", "use a number from 0.001 to 1000"));
+    }
+    let is_drawn = pattern.seed.is_some() || arguments.count.is_some() || arguments.temperature.is_some();
+    if is_drawn && pattern.variety > 0.0 {
+        return Err(refuse(
+            "--variety",
+            "bands that are drawn at random have no penalty on repetition",
+            "leave out --variety, or leave out --seed, --count and --temperature",
+        ));
+    }
+    Ok(match (arguments.best, is_drawn) {
+        (Some(k), _) => Choice::Best(k.into()),
+        (None, true) => Choice::Drawn {
+            seed: pattern.seed.unwrap_or(0),
+            count: arguments.count.unwrap_or(1).into(),
+            temperature: arguments.temperature.unwrap_or(DEFAULT_TEMPERATURE),
+        },
+        (None, false) => Choice::Cheapest,
+    })
+}
+
+/// Where a pattern goes, and its report.
+pub(super) fn destinations(arguments: &PatternArguments) -> Result<(Vec<Output>, Option<Target>), JobError> {
     let outputs: Vec<Output> =
         arguments.output.iter().map(|path| output(path, Format::Svg)).collect::<Result<_, _>>()?;
     let report_target = arguments
         .report
         .as_ref()
         .map(|path| if path.as_os_str() == "-" { Target::Stdout } else { Target::File(path.clone()) });
-    let job = builder(arguments).build()?;
-    job.check_outputs(&outputs, report_target.as_ref())?;
-    let progress = Progress::new(arguments.quiet);
-    let band = job.run(&mut |stage| progress.show(stage))?;
-    let report = band.write(&outputs, report_target.as_ref(), &mut |stage| progress.show(stage))?;
-    drop(progress);
-    if !arguments.quiet {
-        say_band(&report);
-    }
-    Ok(ExitCode::SUCCESS)
+    Ok((outputs, report_target))
 }
 
-fn builder(a: &BandArguments) -> BandBuilder {
-    let mut builder = BandBuilder::new(&a.exemplar, a.along.clone())
-        .closed_pattern(a.closed_pattern)
+fn builder(arguments: &BandArguments) -> Result<BandBuilder, JobError> {
+    let builder = BandBuilder::new(&arguments.exemplar, arguments.along.clone())
+        .closed_pattern(arguments.closed_pattern)
+        .choice(choice(arguments)?)
+        .counted(arguments.pattern.report.is_some());
+    let builder = match arguments.round {
+        Some(radius) => builder.round_mm(radius),
+        None => builder,
+    };
+    Ok(with_pattern(builder, &arguments.pattern))
+}
+
+/// The options that a band and a rectangle share.
+pub(super) fn with_pattern(builder: BandBuilder, a: &PatternArguments) -> BandBuilder {
+    let mut builder = builder
         .slicing(a.slicing)
         .mirror(a.mirror)
         .variety(a.variety)
         .alpha(a.alpha)
         .jump_cost(a.jump_cost)
         .stitch(a.stitch)
+        .memory_limit(a.memory_limit)
         .thickness_mm(a.thickness)
         .chord_mm(a.tolerances.chord)
         .min_feature_mm(a.tolerances.min_feature.unwrap_or(0.0))
@@ -140,12 +214,6 @@ fn builder(a: &BandArguments) -> BandBuilder {
     }
     if let Some(holes) = a.holes.0 {
         builder = builder.holes(holes);
-    }
-    if let Some(seed) = a.seed {
-        builder = builder.seed(seed);
-    }
-    if let Some(radius) = a.round {
-        builder = builder.round_mm(radius);
     }
     if let Some(width) = a.bridge {
         builder = builder.bridge_mm(width);
@@ -163,15 +231,25 @@ fn say_band(report: &BandReport) {
         report.length_mm,
         report.seams.jumps
     );
-    let widths = [("ink", report.min_feature), ("gap", report.min_gap)];
+    say_found(report.min_feature, report.min_gap, &report.notes, &report.files);
+}
+
+/// What was measured, noted and written.
+pub(super) fn say_found(
+    min_feature: Option<Narrowest>,
+    min_gap: Option<Narrowest>,
+    notes: &[String],
+    files: &[String],
+) {
+    let widths = [("ink", min_feature), ("gap", min_gap)];
     for (what, narrowest) in widths.iter().filter_map(|(what, n)| n.map(|n| (what, n))) {
         let p = narrowest.position_mm;
         say!("narrowest {what} {:.3} mm, at ({:.1}, {:.1}) mm", narrowest.width_mm, p.x, p.y);
     }
-    for note in &report.notes {
+    for note in notes {
         say!("note: {note}");
     }
-    for file in &report.files {
+    for file in files {
         say!("wrote {file}");
     }
 }

@@ -1,6 +1,6 @@
 //! Values of options as they are typed.
 
-use crate::domain::{CurveSpec, parse_length_mm};
+use crate::domain::{CurveSpec, RectSize, parse_length_mm};
 use crate::job::{KeptRange, SlicingChoice, StitchMethod, Wanted, WantedError};
 
 /// A length in millimetres: `12mm`, `1.2cm`, `0.5in`, `34pt`, `45px` or `12`.
@@ -8,9 +8,29 @@ pub(super) fn length(text: &str) -> Result<f64, String> {
     parse_length_mm(text).map_err(|e| e.to_string())
 }
 
+/// A size of memory in bytes: `512MB`, `2GB`, `64MB`.
+pub(super) fn memory(text: &str) -> Result<usize, String> {
+    let wanted = "use a number of megabytes or gigabytes, as 512MB or 2GB";
+    let upper = text.to_ascii_uppercase();
+    let (number, unit) = match (upper.strip_suffix("MB"), upper.strip_suffix("GB")) {
+        (Some(number), _) => (number, 1usize << 20),
+        (_, Some(number)) => (number, 1 << 30),
+        _ => return Err(format!("'{text}' is no size of memory; {wanted}")),
+    };
+    match number.trim().parse::<usize>().ok().and_then(|n| n.checked_mul(unit)) {
+        Some(bytes) if bytes > 0 => Ok(bytes),
+        _ => Err(format!("'{text}' is no size of memory; {wanted}")),
+    }
+}
+
 /// A curve: `line:120mm`, `circle:65mm`, `path:FILE.svg#id`.
 pub(super) fn curve(text: &str) -> Result<CurveSpec, String> {
     text.parse::<CurveSpec>().map_err(|e| e.to_string())
+}
+
+/// A size: `120x80mm`.
+pub(super) fn size(text: &str) -> Result<RectSize, String> {
+    text.parse::<RectSize>().map_err(|e| e.to_string())
 }
 
 /// How many of something: `None` when any number will do. (A name of its own, as the parser of arguments gives
@@ -70,6 +90,14 @@ mod tests {
         assert_eq!(kept("1cm..12mm"), Ok(KeptRange { from_mm: 10.0, to_mm: 12.0 }));
         for wrong in ["10mm", "5mm..3mm", "4..4", "..3mm", "1mm..x", "1mm...."] {
             assert!(kept(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn sizes_of_memory_have_units() {
+        assert_eq!((memory("512MB"), memory("2gb")), (Ok(512 << 20), Ok(2 << 30)));
+        for wrong in ["", "2", "0MB", "-1GB", "xMB", "99999999999999999GB"] {
+            assert!(memory(wrong).unwrap_err().contains("as 512MB"), "{wrong}");
         }
     }
 

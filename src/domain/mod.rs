@@ -25,6 +25,7 @@ mod path;
 mod rounding;
 #[cfg(test)]
 mod sample_curves;
+mod size;
 mod spec;
 mod squeeze;
 mod trace;
@@ -33,5 +34,6 @@ pub use band::BandMap;
 pub use curve::{Frame, PlanarCurve};
 pub use error::DomainError;
 pub use length::{LengthError, parse_length_mm};
+pub use size::{RectSize, RectSizeError};
 pub use spec::{CurveSpec, CurveSpecError};
 pub use squeeze::{Side, Squeeze};

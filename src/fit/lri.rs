@@ -179,7 +179,7 @@ mod tests {
         let piece = crossing_strand();
         let lri = Lri::new(&piece).unwrap();
         let (left, right) = targets_of(&piece);
-        let targets = Targets { left: &left, right: &right, offset_mm: 0.0 };
+        let targets = Targets { left: &left, right: &right, offset_mm: 0.0, held_mm: None };
         let bent = lri.solved(&targets).bend(&piece, 1e-6);
         for (row, chain) in lri.links.chains.iter().zip(&bent.chains) {
             assert_eq!(&lri.links.nodes[row.clone()], &chain[..]);
@@ -205,7 +205,7 @@ mod tests {
         for angle in [0.1, -0.3, 0.2] {
             let (left, right) = targets_of(&piece);
             let left = turned(&left, angle, 0.2);
-            let targets = Targets { left: &left, right: &right, offset_mm: 0.0 };
+            let targets = Targets { left: &left, right: &right, offset_mm: 0.0, held_mm: None };
             assert_eq!(kept.solved(&targets).places, fresh.solved(&targets).places);
         }
     }
@@ -254,7 +254,7 @@ mod tests {
             let lri = Lri::new(&piece).unwrap();
             let (left, right) = targets_of(&piece);
             let (left, right) = (turned(&left, left_turn, left_rise), turned(&right, right_turn, right_rise));
-            let targets = Targets { left: &left, right: &right, offset_mm: 0.0 };
+            let targets = Targets { left: &left, right: &right, offset_mm: 0.0, held_mm: None };
             let bent = lri.solved(&targets).bend(&piece, 1e-7);
             for (chain, points) in piece.chains.iter().zip(&bent.chains) {
                 let n = points.len();

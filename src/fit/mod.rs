@@ -26,7 +26,7 @@ pub use interpolant::Monotone;
 pub use lri::{Lri, LriBend};
 pub use offsets::offsets;
 pub use outline::{Fallback, Outline, OutlineContour, Seam};
-pub use placed::{FitError, FitOptions, Placed, Prepared};
+pub use placed::{FitError, FitOptions, Placed, Prepared, Sides};
 pub use sound::Unsound;
 pub use stitch::{Bent, SideTarget, Stitch, StitchMethod, Targets};
 pub use warp::StripWarp;

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::placed::{FitError, FitOptions, Placed, Prepared};
+use super::placed::{FitError, FitOptions, Placed, Prepared, Sides};
 use super::sound::Unsound;
 use super::stitch::{Bent, StitchMethod};
 use crate::pieces::{Catalogue, End};
@@ -57,7 +57,7 @@ pub struct Outline {
     pub stretch: f64,
     /// How far up the run was moved before that, so that it lies in the middle of the band, in millimetres.
     pub lift_mm: f64,
-    /// What heights were multiplied by, so that the run fits the band; at most 1.
+    /// What heights were multiplied by, so that the run fits the band; at most 1 unless it is to fill the band.
     pub squash: f64,
 }
 
@@ -96,12 +96,12 @@ impl Outline {
             contours,
             seams,
             fallbacks,
-            method: options.stitch,
+            method: placed.method(options.stitch),
             stretch: placed.stretch,
             squash: 1.0,
             lift_mm: 0.0,
         };
-        outline.fit_height(options.height_mm);
+        outline.fit_height(options.height_mm, options.sides);
         Ok(outline)
     }
 
@@ -113,13 +113,16 @@ impl Outline {
 
     /// Offsets may carry ink out of the band: the whole is then moved back to the middle, and pressed flat as
     /// far as need be.
-    fn fit_height(&mut self, height_mm: f64) {
+    fn fit_height(&mut self, height_mm: f64, sides: Sides) {
         let (low, high) = self.height_range_mm();
         let half = height_mm / 2.0;
-        if low >= -half && high <= half {
-            return;
-        }
-        self.squash = (height_mm / (high - low)).min(1.0);
+        let fits = height_mm / (high - low);
+        self.squash = match sides {
+            Sides::Held => return,
+            Sides::Free if low >= -half && high <= half => return,
+            Sides::Free => fits.min(1.0),
+            Sides::Filled => fits,
+        };
         self.lift_mm = -(low + high) / 2.0;
         for point in self.contours.iter_mut().flat_map(|c| &mut c.points) {
             point.y = (point.y + self.lift_mm) * self.squash;

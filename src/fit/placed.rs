@@ -23,6 +23,21 @@ pub struct FitOptions {
     pub chord_mm: f64,
     /// How pieces are bent to meet.
     pub stitch: StitchMethod,
+    /// What becomes of the sides of the band.
+    pub sides: Sides,
+}
+
+/// What becomes of the two sides of the band, v = −H/2 and v = H/2.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Sides {
+    /// Ink stays within them: a run that offsets carry out of the band is pressed flat.
+    #[default]
+    Free,
+    /// Ink fills the band from side to side: the run is pressed or stretched.
+    Filled,
+    /// What lies on them stays there: pieces keep their heights, and only what is between the sides bends. Pieces
+    /// are always warped, as rotation-invariant deformation moves what lies on the sides.
+    Held,
 }
 
 /// A run of pieces that cannot be fitted.
@@ -91,6 +106,8 @@ pub struct Placed<'a> {
     pub(super) joints: Vec<Joint>,
     pub(super) stretch: f64,
     is_ring: bool,
+    /// The height above and below the middle that stays where it is.
+    held_mm: Option<f64>,
 }
 
 #[derive(Debug, Clone)]
@@ -125,7 +142,11 @@ impl<'a> Placed<'a> {
         let rises: Vec<f64> = table.iter().map(|j| j.rise_mm).collect();
         let portals: Vec<usize> =
             joins.iter().map(|&(from, _)| catalogue.pieces()[from].right_portals()).collect();
-        let offsets = offsets(&rises, &portals, options.is_ring);
+        let held_mm = (options.sides == Sides::Held).then_some(options.height_mm / 2.0);
+        let offsets = match held_mm {
+            Some(_) => vec![0.0; pieces.len()],
+            None => offsets(&rises, &portals, options.is_ring),
+        };
         // The ink of an open run fills the band from end to end.
         let blank = |p: Option<&&Piece>, of: fn((f64, f64)) -> f64| match p {
             Some(p) if !options.is_ring => of(p.blanks_mm()),
@@ -150,7 +171,7 @@ impl<'a> Placed<'a> {
                 Joint::new(pieces[i], offsets[i], pieces[j], offsets[j], table[i].is_natural)
             })
             .collect();
-        Ok(Self { sequence, pieces, starts_mm, offsets, joints, stretch, is_ring: options.is_ring })
+        Ok(Self { sequence, pieces, starts_mm, offsets, joints, stretch, is_ring: options.is_ring, held_mm })
     }
 
     fn joint_before(&self, i: usize) -> Option<&Joint> {
@@ -178,14 +199,20 @@ impl<'a> Placed<'a> {
             left: self.joint_before(i).map_or(&[][..], |joint| &joint.targets),
             right: self.joints.get(i).map_or(&[][..], |joint| &joint.targets),
             offset_mm: self.offsets[i],
+            held_mm: self.held_mm,
         }
+    }
+
+    /// How pieces are bent where `wanted` was asked for.
+    pub(super) fn method(&self, wanted: StitchMethod) -> StitchMethod {
+        if self.held_mm.is_some() { StitchMethod::Warp } else { wanted }
     }
 
     /// The i-th piece bent to its targets, before stretching, and if rotation-invariant deformation was wanted and
     /// did not hold, why it was warped instead.
     ///
     /// Pieces at the ends of an open run are always warped, as their ink has to end where the band ends, and so are
-    /// pieces without portals, which are only shifted.
+    /// pieces without portals, which are only shifted, and all where the sides of the band are held.
     pub fn bend(
         &self,
         i: usize,
@@ -195,7 +222,7 @@ impl<'a> Placed<'a> {
     ) -> (Bent, Option<Unsound>) {
         let is_end = !self.is_ring && (i == 0 || i + 1 == self.pieces.len());
         let is_loose = self.pieces[i].left.is_empty() && self.pieces[i].right.is_empty();
-        let fault = match method {
+        let fault = match self.method(method) {
             StitchMethod::Lri if !is_end && !is_loose => match self.deformed(i, prepared, chord_mm) {
                 Ok(bent) => return (bent, None),
                 Err(fault) => Some(fault),
@@ -263,6 +290,7 @@ mod tests {
             joints: vec![joint(left), joint(right)],
             stretch: 1.0,
             is_ring: false,
+            held_mm: None,
         }
     }
 

@@ -25,6 +25,8 @@ pub struct Targets<'a> {
     pub right: &'a [SideTarget],
     /// How far up a side without endpoints goes, in millimetres.
     pub offset_mm: f64,
+    /// The height above and below the middle at which everything stays where it is; targets lie between.
+    pub held_mm: Option<f64>,
 }
 
 /// A piece after stitching: x in millimetres from its left cut, y above the middle of the band.

@@ -47,22 +47,29 @@ impl StripWarp {
     /// The warp of the strip of `piece` that takes its endpoints to `targets`.
     pub fn new(piece: &Piece, targets: &Targets<'_>) -> Self {
         let sides = ((&piece.left[..], targets.left), (&piece.right[..], targets.right));
-        Self::of_strip(piece.width_mm, sides.0, sides.1, targets.offset_mm)
+        Self::of_strip(piece.width_mm, sides.0, sides.1, targets.offset_mm, targets.held_mm)
     }
 
     /// The warp of a strip of `width_mm` whose sides' endpoints go to the targets. A side without endpoints
-    /// is moved by `offset_mm`.
+    /// is moved by `offset_mm`, unless heights are held: then points at `held_mm` above and below the middle stay
+    /// where they are, and targets must lie between.
     fn of_strip(
         width_mm: f64,
         (left, left_targets): (&[Endpoint], &[SideTarget]),
         (right, right_targets): (&[Endpoint], &[SideTarget]),
         offset_mm: f64,
+        held_mm: Option<f64>,
     ) -> Self {
         let heights = |ends: &[Endpoint], targets: &[SideTarget]| {
             let mut points: Vec<(f64, f64)> =
                 ends.iter().zip(targets).map(|(e, t)| (e.y_mm, t.y_mm)).collect();
             points.reverse();
             match points[..] {
+                _ if held_mm.is_some() => {
+                    let held = held_mm.unwrap_or_default();
+                    points.insert(0, (-held, -held));
+                    points.push((held, held));
+                }
                 [] => points.push((0.0, offset_mm)),
                 [bottom, above, ..] => {
                     // Beyond the outermost portals the warp eases into a plain shift.
@@ -80,8 +87,8 @@ impl StripWarp {
         let most_reach = MAX_REACH * width_mm;
         Self {
             width_mm,
-            left: Side::new(left_heights, left, left_targets, most_reach, least),
-            right: Side::new(right_heights, right, right_targets, most_reach, least),
+            left: Side::new(left_heights, left, left_targets, most_reach, least, held_mm),
+            right: Side::new(right_heights, right, right_targets, most_reach, least, held_mm),
         }
     }
 }
@@ -93,6 +100,7 @@ impl Side {
         targets: &[SideTarget],
         most_reach: f64,
         least: f64,
+        held_mm: Option<f64>,
     ) -> Self {
         let n = ends.len();
         let clamp = |slope: f64| slope.clamp(-STEEPEST, STEEPEST);
@@ -110,7 +118,7 @@ impl Side {
         if changes.iter().all(|c| c.1.abs() < 1e-9) {
             return Self { heights, slopes: Monotone::new(&[], 0.0), reach_mm: 0.0 };
         }
-        let slopes = faded(&changes, FADE * most_reach);
+        let slopes = faded(&changes, FADE * most_reach, held_mm.unwrap_or(f64::INFINITY));
         let (low, high) = slopes.slope_range();
         let steepest = low.abs().max(high.abs());
         let reach_mm = most_reach.min(SHARE * least / (BUMP_MAX * steepest));
@@ -127,12 +135,13 @@ impl Side {
     }
 }
 
-/// The changes of slope with points added beyond the ends where they have faded to nothing.
-fn faded(changes: &[(f64, f64)], fade: f64) -> Monotone {
+/// The changes of slope with points added beyond the ends, at most `most` from the middle, where they have faded to
+/// nothing.
+fn faded(changes: &[(f64, f64)], fade: f64, most: f64) -> Monotone {
     let (first, last) = (changes[0].0, changes[changes.len() - 1].0);
-    let mut points = vec![(first - fade, 0.0)];
+    let mut points = vec![((first - fade).max(-most), 0.0)];
     points.extend_from_slice(changes);
-    points.push((last + fade, 0.0));
+    points.push(((last + fade).min(most), 0.0));
     Monotone::new(&points, 0.0)
 }
 
@@ -220,7 +229,7 @@ mod tests {
     proptest! {
         #[test]
         fn vertical_lines_stay_in_order(left in ends(), right in ends(), width in 0.2f64..20.0, x in 0.0f64..1.0) {
-            let warp = StripWarp::of_strip(width, (&left.0, &left.1), (&right.0, &right.1), 0.5);
+            let warp = StripWarp::of_strip(width, (&left.0, &left.1), (&right.0, &right.1), 0.5, None);
             let mut before = f64::NEG_INFINITY;
             for i in 0..=2000 {
                 let y = -15.0 + 0.015 * f64::from(i);
@@ -231,9 +240,24 @@ mod tests {
         }
 
         #[test]
+        fn held_heights_stay(left in ends(), right in ends(), width in 0.2f64..20.0, x in 0.0f64..1.0) {
+            let warp = StripWarp::of_strip(width, (&left.0, &left.1), (&right.0, &right.1), 0.0, Some(30.0));
+            let mut before = f64::NEG_INFINITY;
+            for i in 0..=2000 {
+                let y = -30.0 + 0.03 * f64::from(i);
+                let image = warp.map(DVec2::new(x * width, y));
+                prop_assert!(image.y > before, "at y = {y}");
+                before = image.y;
+            }
+            for y in [-30.0, 30.0] {
+                prop_assert!((warp.map(DVec2::new(x * width, y)).y - y).abs() < 1e-12);
+            }
+        }
+
+        #[test]
         fn endpoints_and_slopes_arrive(left in ends(), right in ends()) {
             let width = 10.0;
-            let warp = StripWarp::of_strip(width, (&left.0, &left.1), (&right.0, &right.1), 0.0);
+            let warp = StripWarp::of_strip(width, (&left.0, &left.1), (&right.0, &right.1), 0.0, None);
             for (x, inward, (ends, targets)) in [(0.0, 1.0, &left), (width, -1.0, &right)] {
                 let side = if x == 0.0 { &warp.left } else { &warp.right };
                 let reach = side.reach_mm;

@@ -5,12 +5,13 @@ use std::path::Path;
 use super::bridging::{self, BridgesReport};
 use super::builder::{BandJob, SlicingChoice};
 use super::certificate::{Certificate, FileDigest, sha256};
+use super::choice::Choice;
 use super::error::JobError;
 use super::extrude::{check_stl, name};
 use super::output::{Format, Output, Pending, Target, persist};
 use super::part::{Part, PartError};
-use super::plan::{DEFAULT_MEMORY_LIMIT, Plan, PlanError, PlanOptions, plan};
-use super::refusal;
+use super::plan::Plan;
+use super::planning::plan_runs;
 use super::report::{
     BandReport, DroppedCutReport, FallbackReport, InputReport, SeamReport, StageTime, StitchReport,
 };
@@ -19,11 +20,11 @@ use crate::domain::{BandMap, CurveSpec, PlanarCurve};
 use crate::exemplar::{Exemplar, Limits, ReadOptions, read_path};
 use crate::export::{self, SvgDocument, SvgOptions};
 use crate::fabricate::{self, Counts};
-use crate::fit::{FitOptions, Outline, Prepared, StitchMethod};
+use crate::fit::{FitOptions, Outline, Prepared, Sides, StitchMethod};
 use crate::pieces::{Catalogue, CostWeights};
 use crate::planar::Region;
 use crate::reeb::{ReebGraph, Slicing, SlicingRule};
-use crate::solver::autocorrelation;
+use crate::solver::{autocorrelation, evenness, longest_repeat};
 use crate::topology::{Shape, Topology};
 use crate::verify::{self, Expected, Mismatch, Narrowest, SvgReport};
 use glam::DVec2;
@@ -39,46 +40,70 @@ const HAIRLINE_MM: f64 = 0.1;
 /// When the counts are not as planned, chords cut through a gap or a strand: smaller ones are tried.
 const CHORD_TRIES: [f64; 4] = [1.0, 0.25, 0.06, 0.015];
 
+/// A drawing that has passed, and what was found in it.
+#[derive(Debug, Clone)]
+pub(super) struct Drawn {
+    drawing: SvgDocument,
+    pub(super) found: SvgReport,
+}
+
+/// What a drawing without a file is called.
+const DRAWING: &str = "the drawing";
+
 /// A band that has the planned topology, ready to be written.
 #[derive(Debug, Clone)]
 pub struct Band {
-    job: BandJob,
-    part: Part,
-    plan: Plan,
-    planned: Topology,
+    pub(super) job: BandJob,
+    pub(super) part: Part,
+    pub(super) plan: Plan,
+    pub(super) planned: Topology,
     /// What the part has, with bridges.
-    counts: Counts,
-    report: BandReport,
+    pub(super) counts: Counts,
+    pub(super) report: BandReport,
 }
 
 /// An exemplar cut into pieces.
-struct Cut {
+pub(super) struct Cut {
     exemplar: Exemplar,
     region: Region,
-    slicing: Slicing,
-    catalogue: Catalogue,
-    weights: CostWeights,
+    pub(super) slicing: Slicing,
+    pub(super) catalogue: Catalogue,
+    pub(super) weights: CostWeights,
     mirror: bool,
-    height_mm: f64,
+    pub(super) height_mm: f64,
+    /// What becomes of the sides of the band.
+    pub(super) sides: Sides,
     /// Parts and holes that are too small to be told from nothing at the chord error.
     specks: Vec<DVec2>,
 }
 
 impl Cut {
+    /// What is cut.
+    pub(super) fn region(&self) -> &Region {
+        &self.region
+    }
+
+    /// Makes the catalogue again, after cuts were left out or weights were changed.
+    pub(super) fn weigh(&mut self, own_ends_only: bool) {
+        let catalogue = catalogue(&self.region, &self.slicing, &self.weights, self.mirror);
+        self.catalogue = if own_ends_only { catalogue.with_own_ends_only() } else { catalogue };
+    }
+
     /// Weighs every join instead of the cheapest few; `false` if that changes nothing.
-    fn admit_all_successors(&mut self) -> bool {
+    pub(super) fn admit_all_successors(&mut self) -> bool {
         let pieces = self.catalogue.originals();
         if self.weights.successors >= pieces {
             return false;
         }
         self.weights.successors = pieces;
-        self.catalogue = catalogue(&self.region, &self.slicing, &self.weights, self.mirror);
+        self.weigh(self.catalogue.has_own_ends_only());
         true
     }
 }
 
 impl Band {
-    pub(super) fn new(job: &BandJob, progress: &mut dyn FnMut(Stage)) -> Result<Self, JobError> {
+    /// The bands that the job's choice takes, at least one.
+    pub(super) fn all(job: &BandJob, progress: &mut dyn FnMut(Stage)) -> Result<Vec<Self>, JobError> {
         let mut clock = Clock::new(progress);
         let options = &job.options;
         let (exemplar, curve, curve_input) = clock.time(Stage::Read, || {
@@ -96,60 +121,58 @@ impl Band {
         let half = cut.height_mm / 2.0;
         // Where the band cannot lie is found before the search, not after it.
         let map = clock.time(Stage::Map, || BandMap::new(curve, -half, half))?;
-        let length_mm = map.curve().length_mm();
-        let is_ring = map.curve().is_closed();
-        let plan_options = PlanOptions {
-            shape: if is_ring { Shape::Ring } else { Shape::Open },
-            length_mm,
-            height_mm: cut.height_mm,
-            goal: options.goal,
-            weights: options.weights,
-            seed: options.seed,
-            variety: job.variety,
-            memory_limit: DEFAULT_MEMORY_LIMIT,
-        };
-        let mut planned = clock.time(Stage::Solve, || plan(&cut.catalogue, &plan_options));
-        if matches!(planned, Err(PlanError::Refused { .. })) && cut.admit_all_successors() {
-            // Nothing is refused for a join that was not in the table.
-            planned = clock.time(Stage::Solve, || plan(&cut.catalogue, &plan_options));
-        }
-        let mut to_bridge = None;
-        let mut hint = String::new();
-        if let Err(error) = &planned
-            && bridging::can_help(error)
-            && (options.bridge_mm.is_some() || matches!(error, PlanError::Refused { .. }))
-            && let Some(plan) =
-                clock.time(Stage::Solve, || bridging::relaxed_plan(&cut.catalogue, &plan_options))
-        {
-            hint =
-                bridging::hint(options.goal, topology_of(&cut.catalogue, &plan.sequence, plan_options.shape));
-            to_bridge = options.bridge_mm;
-            planned = if to_bridge.is_some() { Ok(plan) } else { planned };
-        }
-        let plan = planned.map_err(|error| match error {
-            PlanError::TooLarge { labels } => JobError::SearchTooLarge { labels },
-            PlanError::Refused { refusal, bin_mm } => {
-                JobError::Refused(refusal::message(&cut.catalogue, &plan_options, &refusal, bin_mm) + &hint)
+        let runs = plan_runs(job, &mut cut, &map, &mut clock)?;
+        let mut bands = Vec::with_capacity(runs.plans.len());
+        for (plan, planned) in runs.plans {
+            let mut band = Self::made(job, &cut, plan, planned, &map, curve_input.clone(), &mut clock)?;
+            if let Some(width_mm) = runs.bridge_mm {
+                let inside = bridging::inside(&map).map(|p| p + band.part.shift_mm);
+                clock.time(Stage::Bridge, || band.lay_bridges(width_mm, inside))?;
+                band.report.times.clone_from(&clock.times);
             }
-        })?;
-        let planned = topology_of(&cut.catalogue, &plan.sequence, plan_options.shape);
-        let (mut part, outline) = make_part(job, &cut, &plan, &map, planned, &mut clock)?;
-        let bridges = match to_bridge {
-            Some(width_mm) => {
-                Some(clock.time(Stage::Bridge, || lay_bridges(job, &mut part, &map, width_mm))?)
-            }
-            None => None,
-        };
-        let mut report = describe(job, &cut, &plan, planned, &map, &outline, &part, curve_input, clock.times);
+            band.report.log10_sequences = runs.ln_sequences.map(|ln| ln / std::f64::consts::LN_10);
+            band.report.drawn_exactly = runs.is_exact;
+            bands.push(band);
+        }
+        Ok(bands)
+    }
+
+    /// The band that follows a plan.
+    pub(super) fn made(
+        job: &BandJob,
+        cut: &Cut,
+        plan: Plan,
+        planned: Topology,
+        map: &BandMap,
+        curve_input: Option<InputReport>,
+        clock: &mut Clock<'_>,
+    ) -> Result<Self, JobError> {
+        let (part, outline) = make_part(job, cut, &plan, map, planned, clock)?;
+        let report =
+            describe(job, cut, &plan, planned, map, &outline, &part, curve_input, clock.times.clone());
         let counts = Counts::of(&part.region);
-        if let Some(bridges) = &bridges {
-            report.notes.push(bridges.note(counts));
-            let inside = bridging::inside(&map).map(|p| p + part.shift_mm);
-            report.closed_pattern = inside.is_some_and(|p| bridging::surrounds(&part.region, p));
-            report.certificate.add_bridges(&bridges.bridges, counts, report.closed_pattern);
-        }
-        report.bridges = bridges;
         Ok(Self { job: job.clone(), part, plan, planned, counts, report })
+    }
+
+    /// Gives the part bridges of at least `width_mm` so that it meets the goal. `inside` is a point in the inside of
+    /// a ring.
+    pub(super) fn lay_bridges(&mut self, width_mm: f64, inside: Option<DVec2>) -> Result<(), JobError> {
+        let goal = self.job.options.goal;
+        let options =
+            bridging::options(width_mm, &self.job.tolerances, inside.filter(|_| goal.closed_pattern));
+        let bridged = bridging::bridged(&self.part.region, goal, &options)?;
+        let without = Counts::of(&self.part.region);
+        self.part.region = fabricate::snapped_to_f32(&bridged.region)?;
+        self.counts = Counts::of(&self.part.region);
+        let bridges = BridgesReport::new(without, bridged.bridges);
+        let report = &mut self.report;
+        report.notes.push(bridges.note(self.counts));
+        report.closed_pattern = inside.is_some_and(|p| bridging::surrounds(&self.part.region, p));
+        report.certificate.add_bridges(&bridges.bridges, self.counts, report.closed_pattern);
+        (report.components, report.holes) = (self.counts.components, self.counts.holes);
+        (report.area_mm2, report.vertices) = (self.part.region.area_mm2(), self.part.region.vertices());
+        report.bridges = Some(bridges);
+        Ok(())
     }
 
     /// The part in millimetres, y up from the lower left corner of its page.
@@ -179,20 +202,34 @@ impl Band {
         progress: &mut dyn FnMut(Stage),
     ) -> Result<BandReport, JobError> {
         self.job.check_outputs(outputs, report_file)?;
+        let (report, mut pending) = self.deliver(outputs, None, progress)?;
+        if let Some(target) = report_file {
+            pending.push(Pending::new(target, report.to_json().into_bytes())?);
+        }
+        persist(pending)?;
+        Ok(report)
+    }
+
+    /// Every output, encoded, read again and counted, on its way to its name; and the report. `drawn` is what
+    /// [`Band::drawn`] gave, if it was asked before.
+    pub(super) fn deliver(
+        &self,
+        outputs: &[Output],
+        drawn: Option<Drawn>,
+        progress: &mut dyn FnMut(Stage),
+    ) -> Result<(BandReport, Vec<Pending>), JobError> {
         let mut clock = Clock::new(progress);
         let mut report = self.report.clone();
-        let expected = Expected {
-            components: Some(self.counts.components),
-            holes: Some(self.counts.holes),
-            min_feature_mm: self.job.tolerances.min_feature_mm(),
-            min_gap_mm: self.job.tolerances.min_gap_mm(),
-        };
-        // The promise at the machine's tolerance is checked on the drawing, which therefore is always made.
-        let drawing = clock.time(Stage::Svg, || self.svg())?;
-        let found = clock.time(Stage::Verify, || self.read_svg(drawing.text.as_bytes()))?;
-        let svg_name = outputs.iter().find(|o| o.format() == Format::Svg).or(outputs.first());
-        let file = svg_name.map_or_else(|| "the drawing".into(), |o| name(o.target()));
-        found.check(&expected).map_err(|mismatch| self.mismatch(file, mismatch, &found))?;
+        let expected = self.expected();
+        let drawn = drawn.map_or_else(|| self.drawn(&mut clock), Ok);
+        let Drawn { drawing, found } = drawn.map_err(|error| match error {
+            JobError::Mismatch { mismatch, remedy, .. } => {
+                let shown = outputs.iter().find(|o| o.format() == Format::Svg).or(outputs.first());
+                let file = shown.map_or_else(|| DRAWING.into(), |o| name(o.target()));
+                JobError::Mismatch { file, mismatch, remedy }
+            }
+            error => error,
+        })?;
         let mut pending = Vec::new();
         let mut digests = Vec::new();
         let mut digest = |output: &Output, bytes: &[u8]| {
@@ -247,11 +284,25 @@ impl Band {
         report.min_gap = found.min_gap;
         report.files = outputs.iter().map(|o| name(o.target()).display().to_string()).collect();
         report.times.extend(clock.times);
-        if let Some(target) = report_file {
-            pending.push(Pending::new(target, report.to_json().into_bytes())?);
+        Ok((report, pending))
+    }
+
+    /// What every file has to have.
+    fn expected(&self) -> Expected {
+        Expected {
+            components: Some(self.counts.components),
+            holes: Some(self.counts.holes),
+            min_feature_mm: self.job.tolerances.min_feature_mm(),
+            min_gap_mm: self.job.tolerances.min_gap_mm(),
         }
-        persist(pending)?;
-        Ok(report)
+    }
+
+    /// The drawing, which has passed: the promise at the machine's tolerance is checked on it, so it is always made.
+    pub(super) fn drawn(&self, clock: &mut Clock<'_>) -> Result<Drawn, JobError> {
+        let drawing = clock.time(Stage::Svg, || self.svg())?;
+        let found = clock.time(Stage::Verify, || self.read_svg(drawing.text.as_bytes()))?;
+        found.check(&self.expected()).map_err(|mismatch| self.mismatch(DRAWING.into(), mismatch, &found))?;
+        Ok(Drawn { drawing, found })
     }
 
     /// The part as an SVG drawing.
@@ -280,7 +331,7 @@ impl Band {
 
     fn read_svg(&self, bytes: &[u8]) -> Result<SvgReport, JobError> {
         verify::read_svg(bytes, self.job.tolerances.chord_mm() / 4.0)
-            .map_err(|error| JobError::Unjudged { file: "the drawing".into(), error })
+            .map_err(|error| JobError::Unjudged { file: DRAWING.into(), error })
     }
 
     fn mismatch(&self, file: std::path::PathBuf, mismatch: Mismatch, found: &SvgReport) -> JobError {
@@ -304,7 +355,7 @@ impl Band {
     }
 }
 
-fn read_exemplar(job: &BandJob) -> Result<Exemplar, JobError> {
+pub(super) fn read_exemplar(job: &BandJob) -> Result<Exemplar, JobError> {
     let options = ReadOptions {
         chord_mm: job.tolerances.chord_mm() * READ_SHARE,
         target_height_mm: job.options.width_mm,
@@ -336,8 +387,14 @@ fn sha256_of(file: &Path) -> String {
 }
 
 fn slice(job: &BandJob, exemplar: Exemplar) -> Result<Cut, JobError> {
+    let region = exemplar.region().clone();
+    slice_region(job, exemplar, &region)
+}
+
+/// Cuts `region`, which is the ink of `exemplar` or was made from it.
+pub(super) fn slice_region(job: &BandJob, exemplar: Exemplar, region: &Region) -> Result<Cut, JobError> {
     let speck_mm2 = job.tolerances.chord_mm().powi(2);
-    let (region, specks) = exemplar.region().without_specks(speck_mm2);
+    let (region, specks) = region.without_specks(speck_mm2);
     let region = &region;
     if region.is_empty() {
         return Err(JobError::Option {
@@ -357,24 +414,12 @@ fn slice(job: &BandJob, exemplar: Exemplar) -> Result<Cut, JobError> {
     let (weights, mirror) = (job.options.weights, job.options.mirror);
     let catalogue = catalogue(region, &slicing, &weights, mirror);
     let (region, height_mm) = (region.clone(), high.y - low.y);
-    Ok(Cut { region, slicing, catalogue, weights, mirror, height_mm, exemplar, specks })
+    Ok(Cut { region, slicing, catalogue, weights, mirror, height_mm, sides: Sides::Free, exemplar, specks })
 }
 
 fn catalogue(region: &Region, slicing: &Slicing, weights: &CostWeights, mirror: bool) -> Catalogue {
     let new = if mirror { Catalogue::with_mirrored } else { Catalogue::new };
     new(region, &slicing.cuts, weights)
-}
-
-/// The topology of a sequence by joining all descriptors, independently of the automaton that led the search.
-fn topology_of(catalogue: &Catalogue, sequence: &[usize], shape: Shape) -> Topology {
-    let mut pieces = sequence.iter().map(|&p| &catalogue.descriptors()[p]);
-    let first = pieces.next().expect("a plan has pieces").clone();
-    let run =
-        pieces.fold(first, |run, piece| run.join(piece).expect("a plan joins pieces with equal portals"));
-    match shape {
-        Shape::Open => run.finished().expect("a plan for an open curve leaves no portal open"),
-        Shape::Ring => run.close().expect("a plan for a ring closes"),
-    }
 }
 
 fn make_part(
@@ -389,8 +434,8 @@ fn make_part(
     let mut prepared = Prepared::new();
     // What no chord error can help is warped after all.
     let methods: &[StitchMethod] = match job.options.stitch {
-        StitchMethod::Lri => &[StitchMethod::Lri, StitchMethod::Warp],
-        StitchMethod::Warp => &[StitchMethod::Warp],
+        StitchMethod::Lri if cut.sides != Sides::Held => &[StitchMethod::Lri, StitchMethod::Warp],
+        _ => &[StitchMethod::Warp],
     };
     let tries = methods.iter().flat_map(|&stitch| CHORD_TRIES.map(|share| (stitch, share)));
     for (stitch, share) in tries {
@@ -401,6 +446,7 @@ fn make_part(
             is_ring: map.curve().is_closed(),
             chord_mm: chord_mm * FIT_SHARE,
             stitch,
+            sides: cut.sides,
         };
         let outline = clock
             .time(Stage::Fit, || Outline::prepared(&cut.catalogue, &plan.sequence, &fit, &mut prepared))?;
@@ -434,22 +480,6 @@ fn dropped_note(slicing: &Slicing) -> Option<String> {
     })
 }
 
-/// Gives the part bridges of at least `width_mm` so that it meets the goal.
-fn lay_bridges(
-    job: &BandJob,
-    part: &mut Part,
-    map: &BandMap,
-    width_mm: f64,
-) -> Result<BridgesReport, JobError> {
-    let goal = job.options.goal;
-    let inside = bridging::inside(map).map(|p| p + part.shift_mm).filter(|_| goal.closed_pattern);
-    let options = bridging::options(width_mm, &job.tolerances, inside);
-    let bridged = bridging::bridged(&part.region, goal, &options)?;
-    let without = Counts::of(&part.region);
-    part.region = fabricate::snapped_to_f32(&bridged.region)?;
-    Ok(BridgesReport::new(without, bridged.bridges))
-}
-
 #[expect(
     clippy::too_many_arguments,
     reason = "a report draws on every stage, and this is the only place that sees all"
@@ -478,7 +508,7 @@ fn describe(
             first.y
         ));
     }
-    if outline.method != options.stitch {
+    if outline.method != options.stitch && cut.sides != Sides::Held {
         notes.push(
             "the whole band was stitched by --stitch warp, as rotation-invariant deformation made contours meet between its pieces"
                 .to_owned(),
@@ -534,7 +564,14 @@ fn describe(
         },
         along: options.along.to_string(),
         curve,
-        seed: options.seed,
+        seed: match options.choice {
+            Choice::Drawn { seed, .. } => Some(seed),
+            _ => options.seed,
+        },
+        drawn_exactly: None,
+        log10_sequences: None,
+        longest_repeat: longest_repeat(&plan.sequence),
+        evenness: evenness(&plan.sequence, cut.catalogue.pieces().len()),
         wanted_components: options.goal.components.map(|w| [w.least(), w.most()]),
         wanted_holes: options.goal.holes.map(|w| [w.least(), w.most()]),
         wanted_closed_pattern: options.goal.closed_pattern,

@@ -3,8 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use super::band::Band;
+use super::choice::Choice;
 use super::error::JobError;
 use super::output::{Output, Target};
+use super::plan::DEFAULT_MEMORY_LIMIT;
 use super::stage::Stage;
 use crate::domain::CurveSpec;
 use crate::fit::StitchMethod;
@@ -43,6 +45,9 @@ pub struct BandBuilder {
     pub(super) round_mm: Option<f64>,
     pub(super) stitch: StitchMethod,
     pub(super) bridge_mm: Option<f64>,
+    pub(super) choice: Choice,
+    pub(super) counted: bool,
+    memory_limit: usize,
     chord_mm: f64,
     min_feature_mm: f64,
     min_gap_mm: f64,
@@ -69,6 +74,9 @@ impl BandBuilder {
             round_mm: None,
             stitch: StitchMethod::default(),
             bridge_mm: None,
+            choice: Choice::default(),
+            counted: false,
+            memory_limit: DEFAULT_MEMORY_LIMIT,
             chord_mm: Tolerances::DEFAULT_CHORD_MM,
             min_feature_mm: 0.0,
             min_gap_mm: 0.0,
@@ -178,6 +186,25 @@ impl BandBuilder {
         self
     }
 
+    /// Which of the sequences that meet the constraints are taken; one band is made of each.
+    pub fn choice(mut self, choice: Choice) -> Self {
+        self.choice = choice;
+        self
+    }
+
+    /// Whether the report tells how many sequences meet the constraints, where they can be counted.
+    pub fn counted(mut self, counted: bool) -> Self {
+        self.counted = counted;
+        self
+    }
+
+    /// The memory that the search may take, in bytes. Beyond it the best that a beam finds is taken, and the report
+    /// says how far from the optimum it may be.
+    pub fn memory_limit(mut self, bytes: usize) -> Self {
+        self.memory_limit = bytes;
+        self
+    }
+
     /// The width of bridges: where the ornament cannot give the components or holes that are asked for, struts of
     /// this width join components and slits of this width open holes. Without it there are none, and such a job
     /// is refused.
@@ -219,7 +246,8 @@ impl BandBuilder {
             });
         }
         let variety = (self.beta > 0.0).then_some(Variety { beta: self.beta });
-        Ok(BandJob { options: self, tolerances, variety })
+        let memory_limit = self.memory_limit;
+        Ok(BandJob { options: self, tolerances, variety, memory_limit })
     }
 }
 
@@ -240,6 +268,8 @@ pub struct BandJob {
     pub(super) options: BandBuilder,
     pub(super) tolerances: Tolerances,
     pub(super) variety: Option<Variety>,
+    /// The memory that the search may take, in bytes.
+    pub(super) memory_limit: usize,
 }
 
 impl BandJob {
@@ -262,6 +292,15 @@ impl BandJob {
     /// # Errors
     /// [`JobError`] says why there is no band, and what would work.
     pub fn run(&self, progress: &mut dyn FnMut(Stage)) -> Result<Band, JobError> {
-        Band::new(self, progress)
+        Ok(self.run_all(progress)?.swap_remove(0))
+    }
+
+    /// Makes a band of each sequence that the job's [`Choice`] takes: fewer than asked for when there are no more, and
+    /// at least one.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn run_all(&self, progress: &mut dyn FnMut(Stage)) -> Result<Vec<Band>, JobError> {
+        Band::all(self, progress)
     }
 }

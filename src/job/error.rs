@@ -13,7 +13,7 @@ use crate::fit::FitError;
 use crate::pieces::CostWeightsError;
 use crate::planar::TolerancesError;
 use crate::reeb::SlicingError;
-use crate::verify::{Mismatch, VerifyError};
+use crate::verify::{Mismatch, TilingFault, VerifyError};
 
 /// Why a job ended without its files.
 #[derive(Debug, Error)]
@@ -86,6 +86,9 @@ pub enum JobError {
         /// Why.
         error: VerifyError,
     },
+    /// A tile does not join its copies.
+    #[error("the tile failed verification: {0}. Nothing was written")]
+    Tiling(#[from] TilingFault),
     /// A file failed verification.
     #[error("{}: {mismatch}{remedy}. Nothing was written", file.display())]
     Mismatch {
@@ -133,7 +136,11 @@ impl JobError {
             Self::Bridge(BridgeError::Width { .. }) => 2,
             Self::Refused(_) | Self::SearchTooLarge { .. } | Self::Bridge(_) => 3,
             Self::Fabricate(FabricateError::Thickness { .. }) => 2,
-            Self::Outline { .. } | Self::Fabricate(_) | Self::Unjudged { .. } | Self::Mismatch { .. } => 4,
+            Self::Outline { .. }
+            | Self::Tiling(_)
+            | Self::Fabricate(_)
+            | Self::Unjudged { .. }
+            | Self::Mismatch { .. } => 4,
             Self::Fit(_) => 1,
         }
     }

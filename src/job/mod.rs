@@ -1,4 +1,4 @@
-//! Whole jobs: a band along a curve, a solid from any SVG.
+//! Whole jobs: a band along a curve, a rectangle, a solid from any SVG.
 //!
 //! A builder collects options, `build()` checks them by name, `run()` computes, and the result encodes itself
 //! as files that are read again and verified before they have their names. All rooms meet here, and nothing
@@ -33,6 +33,12 @@ mod json;
 mod output;
 mod part;
 mod plan;
+mod planning;
+mod rect;
+mod rect_builder;
+mod rect_report;
+mod rect_search;
+mod rect_tile;
 mod refusal;
 mod report;
 mod stage;
@@ -50,6 +56,9 @@ pub use error::{JobError, OutlineFault};
 pub use extrude::{ExtrudeBridges, ExtrudeReport, extrude};
 pub use output::{Format, Output, Target};
 pub use plan::{DEFAULT_MEMORY_LIMIT, Plan, PlanError, PlanOptions, plan};
+pub use rect::Rect;
+pub use rect_builder::{RectBuilder, RectJob};
+pub use rect_report::{Attempt, DirectionReport, RectReport};
 pub use report::{
     BandReport, DroppedCutReport, FallbackReport, InputReport, SeamReport, StageTime, StitchReport,
 };

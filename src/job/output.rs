@@ -37,6 +37,25 @@ pub enum Target {
     Stdout,
 }
 
+impl Target {
+    /// The target with a number before the extension: `out-01.svg` for `out.svg`. Standard output has none.
+    pub fn numbered(&self, number: usize) -> Self {
+        match self {
+            Self::Stdout => Self::Stdout,
+            Self::File(path) => {
+                let text = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_os_string();
+                let mut name = text(path.file_stem());
+                name.push(format!("-{number:02}"));
+                if path.extension().is_some() {
+                    name.push(".");
+                    name.push(text(path.extension()));
+                }
+                Self::File(path.with_file_name(name))
+            }
+        }
+    }
+}
+
 impl std::fmt::Display for Target {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
@@ -80,6 +99,11 @@ impl Output {
     /// Standard output.
     pub fn stdout(format: Format) -> Self {
         Self { target: Target::Stdout, format }
+    }
+
+    /// The same format with another target.
+    pub fn with_target(&self, target: Target) -> Self {
+        Self { target, format: self.format }
     }
 
     /// The format.

@@ -90,6 +90,23 @@ pub const DEFAULT_MEMORY_LIMIT: usize = 2 << 30;
 /// # Errors
 /// [`PlanError`] when the constraints cannot be met or the search is too large.
 pub fn plan(catalogue: &Catalogue, options: &PlanOptions) -> Result<Plan, PlanError> {
+    match first_fit(catalogue, options) {
+        Ok(plan) => return Ok(plan),
+        Err(Unsolved::TooLarge { labels }) => return Err(PlanError::TooLarge { labels }),
+        Err(Unsolved::Infeasible) => {}
+    }
+    let bin_mm = bin_mm(catalogue, options.length_mm);
+    let widest = EPSILONS.iter().rev().find_map(|&epsilon| window(options.length_mm, epsilon, bin_mm));
+    let mut problem = problem(catalogue, options, bin_mm);
+    // A window without a whole number of bins stands for its middle.
+    let middle = (options.length_mm / bin_mm).round().max(1.0) as u32;
+    problem.window = widest.unwrap_or(middle..=middle);
+    let longest = (problem.window.end() * 2).max((catalogue.width_mm() * 2.0 / bin_mm) as u32);
+    Err(PlanError::Refused { refusal: solver::explain(&problem, options.goal, longest), bin_mm })
+}
+
+/// The best sequence for the least ε with which there is one.
+pub(super) fn first_fit(catalogue: &Catalogue, options: &PlanOptions) -> Result<Plan, Unsolved> {
     let bin_mm = bin_mm(catalogue, options.length_mm);
     let mut problem = problem(catalogue, options, bin_mm);
     for epsilon in EPSILONS {
@@ -97,18 +114,12 @@ pub fn plan(catalogue: &Catalogue, options: &PlanOptions) -> Result<Plan, PlanEr
         let Some(window) = window(options.length_mm, epsilon, bin_mm) else { continue };
         problem.window = window;
         match solver::solve(&problem, options.goal) {
-            Ok(solution) => return Ok(finish(catalogue, options, solution, epsilon)),
-            Err(Unsolved::TooLarge { labels }) => return Err(PlanError::TooLarge { labels }),
             Err(Unsolved::Infeasible) => {}
+            Ok(solution) => return Ok(finish(catalogue, options, solution, epsilon)),
+            Err(error) => return Err(error),
         }
     }
-    // A window without a whole number of bins stands for its middle.
-    if *problem.window.end() == 0 {
-        let bins = (options.length_mm / bin_mm).round().max(1.0) as u32;
-        problem.window = bins..=bins;
-    }
-    let longest = (problem.window.end() * 2).max((catalogue.width_mm() * 2.0 / bin_mm) as u32);
-    Err(PlanError::Refused { refusal: solver::explain(&problem, options.goal, longest), bin_mm })
+    Err(Unsolved::Infeasible)
 }
 
 pub(super) fn finish(catalogue: &Catalogue, options: &PlanOptions, solution: Solution, epsilon: f64) -> Plan {
@@ -189,7 +200,10 @@ fn problem<'a>(catalogue: &'a Catalogue, options: &PlanOptions, bin_mm: f64) -> 
         })
         .collect();
     // Only the exemplar's own ends are no jumps.
-    let end_cost = |is_own: bool| Some(if is_own { 0 } else { micro(options.weights.jump) });
+    let end_cost = |is_own: bool| match is_own {
+        true => Some(0),
+        false => (!catalogue.has_own_ends_only()).then(|| micro(options.weights.jump)),
+    };
     let begin = pieces
         .iter()
         .enumerate()

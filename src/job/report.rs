@@ -85,6 +85,16 @@ pub struct BandReport {
     pub curve: Option<InputReport>,
     /// The seed, if one was given.
     pub seed: Option<u64>,
+    /// With a seed: whether the sequence was drawn from all that meet the constraints with its exact probability;
+    /// where they are too many, every jump costs a random part more instead.
+    pub drawn_exactly: Option<bool>,
+    /// The decimal logarithm of the number of sequences that meet the constraints within the accepted lengths, if they
+    /// were counted.
+    pub log10_sequences: Option<f64>,
+    /// The most pieces in a row that occur twice without overlapping.
+    pub longest_repeat: usize,
+    /// How evenly the exemplar's pieces are used: the entropy of their frequencies as a part of the greatest, 0 to 1.
+    pub evenness: f64,
     /// The least and the greatest number of components that were asked for.
     pub wanted_components: Option<[u32; 2]>,
     /// The least and the greatest number of holes that were asked for.

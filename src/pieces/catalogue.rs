@@ -99,6 +99,7 @@ pub struct Catalogue {
     joins: Vec<Vec<Join>>,
     width_mm: f64,
     height_mm: f64,
+    own_ends_only: bool,
 }
 
 /// How many jumps a join costs that sets the end of the exemplar beside its beginning with a gap between them.
@@ -126,8 +127,15 @@ impl Catalogue {
             pieces.extend((0..originals).map(|i| mirrored(&pieces[i], total_mm)).collect::<Vec<_>>());
         }
         let descriptors = pieces.iter().map(|p| p.descriptor.clone()).collect();
-        let mut catalogue =
-            Self { pieces, originals, descriptors, joins: Vec::new(), width_mm: size.x, height_mm: size.y };
+        let mut catalogue = Self {
+            pieces,
+            originals,
+            descriptors,
+            joins: Vec::new(),
+            width_mm: size.x,
+            height_mm: size.y,
+            own_ends_only: false,
+        };
         let scale = Scale { unit_mm: size.max_element() / REFERENCE_MM, height_mm: size.y };
         catalogue.joins =
             (0..catalogue.pieces.len()).map(|from| catalogue.joins_from(from, scale, weights)).collect();
@@ -187,6 +195,17 @@ impl Catalogue {
     /// The join from one piece to another, if it was kept.
     pub fn join(&self, from: usize, to: usize) -> Option<&Join> {
         self.joins[from].iter().find(|j| j.to == to)
+    }
+
+    /// The same catalogue for open runs that begin and end as the exemplar does.
+    pub fn with_own_ends_only(mut self) -> Self {
+        self.own_ends_only = true;
+        self
+    }
+
+    /// Whether open runs may only begin and end as the exemplar does, or its mirror image.
+    pub fn has_own_ends_only(&self) -> bool {
+        self.own_ends_only
     }
 
     /// The width of the exemplar in millimetres.

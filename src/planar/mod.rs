@@ -13,8 +13,10 @@
 mod contour;
 mod grid;
 mod index;
+mod motion;
 mod overlay;
 mod region;
+mod split;
 mod tolerances;
 mod touch;
 

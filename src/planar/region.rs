@@ -147,6 +147,23 @@ impl Region {
         }
     }
 
+    /// The region with `place` applied to every point. `place` must be a motion that takes the grid to itself, and
+    /// `flips` says whether it turns left to right.
+    pub(super) fn rigidly_moved(&self, place: impl Fn(GridPoint) -> GridPoint, flips: bool) -> Self {
+        let moved = |contour: &Contour| {
+            let mut points: Vec<GridPoint> = contour.points().iter().map(|&p| place(p)).collect();
+            if flips {
+                points.reverse();
+            }
+            Contour::new(points).expect("a motion keeps a contour a contour")
+        };
+        let part = |part: &Part| Part {
+            exterior: moved(&part.exterior),
+            holes: part.holes.iter().map(moved).collect(),
+        };
+        Self { grid: self.grid, parts: self.parts.iter().map(part).collect() }.sorted()
+    }
+
     fn sorted(mut self) -> Self {
         for part in &mut self.parts {
             part.holes.sort_unstable();

@@ -28,6 +28,7 @@ mod replay;
 mod shells;
 mod stl;
 mod svg;
+mod tiling;
 mod walls;
 
 pub use certificate::{
@@ -40,3 +41,4 @@ pub use narrowest::{Narrowest, Widths, min_feature, min_gap, widths};
 pub use shells::{Shell, StlFault, StlFaultKind, StlReport};
 pub use stl::read_stl;
 pub use svg::{SvgFault, SvgReport, read_svg};
+pub use tiling::{Tiling, TilingFault, tiling};

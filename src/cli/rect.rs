@@ -1,0 +1,54 @@
+//! `openwork rect`.
+
+use std::process::ExitCode;
+
+use super::args::RectArguments;
+use super::progress::Progress;
+use super::run::{CliError, destinations, say_found, with_pattern};
+use crate::job::{RectBuilder, RectReport};
+
+pub(super) fn run_rect(arguments: &RectArguments) -> Result<ExitCode, CliError> {
+    let (outputs, report_target) = destinations(&arguments.pattern)?;
+    let quiet = arguments.pattern.quiet;
+    let job = RectBuilder::new(&arguments.exemplar, arguments.size)
+        .tile(arguments.tile)
+        .options(|band| {
+            let band = with_pattern(band, &arguments.pattern);
+            match arguments.pattern.seed {
+                Some(seed) => band.seed(seed),
+                None => band,
+            }
+        })
+        .build()?;
+    job.check_outputs(&outputs, report_target.as_ref())?;
+    let progress = Progress::new(quiet);
+    let rect = job.run(&mut |stage| progress.show(stage))?;
+    let report = rect.write(&outputs, report_target.as_ref(), &mut |stage| progress.show(stage))?;
+    drop(progress);
+    if !quiet {
+        say_rect(&report);
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn say_rect(report: &RectReport) {
+    let [width, height] = report.size_mm;
+    say!(
+        "{} component(s), {} hole(s) in {width} x {height} mm: {} pieces along the width, {} rows along the height, {} way(s) tried",
+        report.components,
+        report.holes,
+        report.along_u.pieces_in_result,
+        report.along_v.pieces_in_result,
+        report.attempts.len()
+    );
+    if let Some(tiling) = &report.tiling {
+        say!(
+            "copies join at {} place(s) across and {} upwards: the tiling has {} component(s) and {} hole(s) for each tile",
+            tiling.joins_across,
+            tiling.joins_up,
+            tiling.components,
+            tiling.holes
+        );
+    }
+    say_found(report.min_feature, report.min_gap, &report.notes, &report.files);
+}

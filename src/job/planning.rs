@@ -1,0 +1,126 @@
+//! From a sliced exemplar to the sequences of a job: strictly, or with what bridges are going to mend.
+
+use super::band::Cut;
+use super::bridging;
+use super::builder::BandJob;
+use super::choice::{Choice, Chosen, choose};
+use super::error::JobError;
+use super::plan::{Plan, PlanError, PlanOptions};
+use super::refusal;
+use super::stage::{Clock, Stage};
+use crate::domain::BandMap;
+use crate::pieces::Catalogue;
+use crate::topology::{Shape, Topology};
+
+/// The sequences of a job.
+pub(super) struct Runs {
+    /// Each with what it adds up to.
+    pub(super) plans: Vec<(Plan, Topology)>,
+    /// The width of bridges, when the sequences do not meet the goal by themselves.
+    pub(super) bridge_mm: Option<f64>,
+    /// As in [`Chosen`].
+    pub(super) ln_sequences: Option<f64>,
+    /// As in [`Chosen`].
+    pub(super) is_exact: Option<bool>,
+}
+
+/// The best sequence for `job` along the curve of `map`, and what it adds up to.
+pub(super) fn plan_run(
+    job: &BandJob,
+    cut: &mut Cut,
+    map: &BandMap,
+    clock: &mut Clock<'_>,
+) -> Result<(Plan, Topology), JobError> {
+    let options = plan_options(job, cut, map);
+    let chosen = strictly(&options, Choice::Cheapest, false, cut, clock);
+    let mut chosen = chosen.map_err(|error| refused(error, cut, &options, ""))?;
+    Ok(with_topology(cut, &options, chosen.plans.swap_remove(0)))
+}
+
+/// The sequences that `job` chooses along the curve of `map`. Where none meets the goal and bridges are allowed, the
+/// best for them.
+pub(super) fn plan_runs(
+    job: &BandJob,
+    cut: &mut Cut,
+    map: &BandMap,
+    clock: &mut Clock<'_>,
+) -> Result<Runs, JobError> {
+    let options = plan_options(job, cut, map);
+    let error = match strictly(&options, job.options.choice, job.options.counted, cut, clock) {
+        Ok(Chosen { plans, ln_sequences, is_exact }) => {
+            let plans = plans.into_iter().map(|plan| with_topology(cut, &options, plan)).collect();
+            return Ok(Runs { plans, bridge_mm: None, ln_sequences, is_exact });
+        }
+        Err(error) => error,
+    };
+    let bridge_mm = job.options.bridge_mm;
+    let mut hint = String::new();
+    // Without bridges allowed, looking for what they could do must not take longer than the refusal itself.
+    if bridging::can_help(&error) && (bridge_mm.is_some() || matches!(error, PlanError::Refused { .. })) {
+        let relaxed = || bridging::relaxed_plan(&cut.catalogue, &options);
+        if let Some(plan) = clock.time(Stage::Solve, relaxed) {
+            let run = with_topology(cut, &options, plan);
+            if bridge_mm.is_some() {
+                return Ok(Runs { plans: vec![run], bridge_mm, ln_sequences: None, is_exact: None });
+            }
+            hint = bridging::hint(options.goal, run.1);
+        }
+    }
+    Err(refused(error, cut, &options, &hint))
+}
+
+fn plan_options(job: &BandJob, cut: &Cut, map: &BandMap) -> PlanOptions {
+    PlanOptions {
+        shape: if map.curve().is_closed() { Shape::Ring } else { Shape::Open },
+        length_mm: map.curve().length_mm(),
+        height_mm: cut.height_mm,
+        goal: job.options.goal,
+        weights: job.options.weights,
+        seed: job.options.seed,
+        variety: job.variety,
+        memory_limit: job.memory_limit,
+    }
+}
+
+/// The sequences that meet the goal. Nothing is refused for a join that was not in the table.
+fn strictly(
+    options: &PlanOptions,
+    choice: Choice,
+    counted: bool,
+    cut: &mut Cut,
+    clock: &mut Clock<'_>,
+) -> Result<Chosen, PlanError> {
+    let chosen = clock.time(Stage::Solve, || choose(&cut.catalogue, options, choice, counted));
+    match chosen {
+        Err(PlanError::Refused { .. }) if cut.admit_all_successors() => {
+            clock.time(Stage::Solve, || choose(&cut.catalogue, options, choice, counted))
+        }
+        chosen => chosen,
+    }
+}
+
+fn with_topology(cut: &Cut, options: &PlanOptions, plan: Plan) -> (Plan, Topology) {
+    let topology = topology_of(&cut.catalogue, &plan.sequence, options.shape);
+    (plan, topology)
+}
+
+fn refused(error: PlanError, cut: &Cut, options: &PlanOptions, hint: &str) -> JobError {
+    match error {
+        PlanError::TooLarge { labels } => JobError::SearchTooLarge { labels },
+        PlanError::Refused { refusal, bin_mm } => {
+            JobError::Refused(refusal::message(&cut.catalogue, options, &refusal, bin_mm) + hint)
+        }
+    }
+}
+
+/// The topology of a sequence by joining all descriptors, independently of the automaton that led the search.
+fn topology_of(catalogue: &Catalogue, sequence: &[usize], shape: Shape) -> Topology {
+    let mut pieces = sequence.iter().map(|&p| &catalogue.descriptors()[p]);
+    let first = pieces.next().expect("a plan has pieces").clone();
+    let run =
+        pieces.fold(first, |run, piece| run.join(piece).expect("a plan joins pieces with equal portals"));
+    match shape {
+        Shape::Open => run.finished().expect("a plan for an open curve leaves no portal open"),
+        Shape::Ring => run.close().expect("a plan for a ring closes"),
+    }
+}

@@ -1,0 +1,128 @@
+//! A rectangle: two bands, one along each direction (Zhou 2014 §6.2).
+//!
+//! The pattern is synthesized along u, turned by 90 degrees, used as the exemplar along v, and turned back. Turns
+//! are exact, and the second band has the constraints of the whole, so nothing has to be proved again: the
+//! rectangle *is* a band that lies on its side. What is excluded here is the choice of both directions, which
+//! is a search of its own ([`super::rect_search`]).
+//!
+//! The ink fills the rectangle: the run of each pass has the exact length between its first and its last ink,
+//! and across it the rows are pressed or stretched, at most as much as a band may be along its length.
+
+use super::band::{Band, Drawn};
+use super::error::JobError;
+use super::output::{Output, Pending, Target, persist};
+use super::plan::Plan;
+use super::rect_builder::RectJob;
+use super::rect_report::{DirectionReport, RectReport};
+use super::rect_search::{Found, Made, search};
+use super::stage::{Clock, Stage};
+use crate::planar::Region;
+use crate::topology::Topology;
+use crate::verify::Tiling;
+
+/// A rectangle that has the planned topology, ready to be written.
+#[derive(Debug, Clone)]
+pub struct Rect {
+    /// The second pass, turned back.
+    band: Band,
+    drawn: Drawn,
+    report: RectReport,
+}
+
+impl Rect {
+    pub(super) fn new(job: &RectJob, progress: &mut dyn FnMut(Stage)) -> Result<Self, JobError> {
+        let mut clock = Clock::new(progress);
+        let found = search(job, &mut clock)?;
+        let report = describe(job, &found);
+        let Made { mut band, drawn, .. } = found.second;
+        band.report.times = clock.times;
+        Ok(Self { band, drawn, report })
+    }
+
+    /// The part in millimetres, y up from the lower left corner of its page.
+    pub fn region(&self) -> &Region {
+        self.band.region()
+    }
+
+    /// The plan of the second pass: rows, from the top.
+    pub fn plan(&self) -> &Plan {
+        self.band.plan()
+    }
+
+    /// The tiling that copies make, if the rectangle is a tile.
+    pub fn tiling(&self) -> Option<Tiling> {
+        self.report.tiling
+    }
+
+    /// What the rows add up to.
+    pub fn topology(&self) -> Topology {
+        self.band.topology()
+    }
+
+    /// Encodes every output, reads each again, counts, and gives them their names only if all pass. The report
+    /// goes to `report_file` as JSON, if one is named.
+    ///
+    /// # Errors
+    /// [`JobError`] when a file cannot be written or does not pass; then none of them exists under its name.
+    pub fn write(
+        &self,
+        outputs: &[Output],
+        report_file: Option<&Target>,
+        progress: &mut dyn FnMut(Stage),
+    ) -> Result<RectReport, JobError> {
+        self.band.job.check_outputs(outputs, report_file)?;
+        let (found, mut pending) = self.band.deliver(outputs, Some(self.drawn.clone()), progress)?;
+        let mut report = self.report.clone();
+        report.measured(found);
+        if let Some(target) = report_file {
+            pending.push(Pending::new(target, report.to_json().into_bytes())?);
+        }
+        persist(pending)?;
+        Ok(report)
+    }
+}
+
+fn describe(job: &RectJob, found: &Found) -> RectReport {
+    let Found { first, second, cuts_mm: [first_cuts, second_cuts], exemplar, .. } = found;
+    let options = &job.band.options;
+    let made = &second.band.report;
+    // Notes on the exemplar itself come with the second pass too.
+    let own = first.report.notes.iter().filter(|note| !exemplar.notes().contains(note));
+    let notes = own.map(|note| format!("first pass: {note}")).collect();
+    RectReport {
+        schema_version: 1,
+        generator: made.generator,
+        exemplar: made.exemplar.clone(),
+        size_mm: [job.size.width_mm(), job.size.height_mm()],
+        seed: options.seed,
+        wanted_components: options.goal.components.map(|w| [w.least(), w.most()]),
+        wanted_holes: options.goal.holes.map(|w| [w.least(), w.most()]),
+        components: made.components,
+        holes: made.holes,
+        mirror: options.mirror,
+        kept_mm: options.kept.iter().map(|k| [k.from_mm, k.to_mm]).collect(),
+        thickness_mm: options.thickness_mm,
+        chord_mm: job.band.tolerances.chord_mm(),
+        along_u: DirectionReport::new(&first.report, first.report.width_mm, first_cuts.clone()),
+        along_v: DirectionReport::new(made, job.size.width_mm(), second_cuts.clone()),
+        mirrored: found.mirrored,
+        tiling: second.tiling,
+        bridges: made.bridges.clone(),
+        attempts: found.attempts.clone(),
+        chosen_attempt: found.chosen,
+        min_feature: None,
+        min_gap: None,
+        area_mm2: made.area_mm2,
+        page_mm: second.band.part.page_mm.to_array(),
+        vertices: made.vertices,
+        svg_segments: None,
+        triangles: None,
+        shells: None,
+        genus: None,
+        volume_mm3: None,
+        files: Vec::new(),
+        certificate: made.certificate.clone(),
+        notes,
+        times: Vec::new(),
+    }
+}

@@ -1,0 +1,101 @@
+//! Options of a rectangle, checked before anything is computed.
+
+use std::path::Path;
+
+use super::builder::{BandBuilder, BandJob};
+use super::error::JobError;
+use super::output::{Output, Target};
+use super::rect::Rect;
+use super::stage::Stage;
+use crate::domain::{CurveSpec, RectSize};
+
+/// Collects the options of a rectangle (Zhou 2014 §6.2).
+#[derive(Debug, Clone)]
+pub struct RectBuilder {
+    band: BandBuilder,
+    size: RectSize,
+    tile: bool,
+}
+
+impl RectBuilder {
+    /// A rectangle of the exemplar in an SVG file.
+    pub fn new(exemplar: impl AsRef<Path>, size: RectSize) -> Self {
+        let along = CurveSpec::Line { length_mm: size.width_mm() };
+        Self { band: BandBuilder::new(exemplar, along), size, tile: false }
+    }
+
+    /// Sets options that a rectangle shares with a band. Its constraints hold for the finished rectangle, its
+    /// `width_mm` is the height of the exemplar's own rows, and the curve stays a line.
+    ///
+    /// ```
+    /// use openwork::job::RectBuilder;
+    ///
+    /// let size = "60x40mm".parse()?;
+    /// let job = RectBuilder::new("fixtures/exemplars/vine.svg", size)
+    ///     .options(|band| band.components(1).min_feature_mm(0.4))
+    ///     .build()?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn options(mut self, set: impl FnOnce(BandBuilder) -> BandBuilder) -> Self {
+        self.band = set(self.band);
+        self.band.along = CurveSpec::Line { length_mm: self.size.width_mm() };
+        self
+    }
+
+    /// Whether opposite sides match, so that copies join side by side and one above the other. What is asked for
+    /// holds for one tile as it is written; the report says what the tiling has.
+    pub fn tile(mut self, tile: bool) -> Self {
+        self.tile = tile;
+        self
+    }
+
+    /// Checks every option by its name.
+    ///
+    /// # Errors
+    /// As [`BandBuilder::build`]; and [`JobError::Option`] for `--width` above the height of the rectangle, and
+    /// for a closed pattern, which only rings have.
+    pub fn build(self) -> Result<RectJob, JobError> {
+        let band = self.band.build()?;
+        if let Some(width) = band.options.width_mm.filter(|&width| width > self.size.height_mm()) {
+            return Err(JobError::Option {
+                option: "--width",
+                found: format!("rows {width} mm high do not fit a height of {} mm", self.size.height_mm()),
+                wanted: "make the rows lower, or the rectangle higher".to_owned(),
+            });
+        }
+        if band.options.goal.closed_pattern {
+            return Err(JobError::Option {
+                option: "--closed-pattern",
+                found: "a rectangle is not closed".to_owned(),
+                wanted: "a pattern can close only along a closed curve; leave it out".to_owned(),
+            });
+        }
+        Ok(RectJob { band, size: self.size, tile: self.tile })
+    }
+}
+
+/// A rectangle whose options are in order.
+#[derive(Debug, Clone)]
+pub struct RectJob {
+    pub(super) band: BandJob,
+    pub(super) size: RectSize,
+    pub(super) tile: bool,
+}
+
+impl RectJob {
+    /// Refuses outputs that would overwrite each other or the exemplar, or that cannot be files.
+    ///
+    /// # Errors
+    /// As [`Output::check`].
+    pub fn check_outputs(&self, outputs: &[Output], report_file: Option<&Target>) -> Result<(), JobError> {
+        self.band.check_outputs(outputs, report_file)
+    }
+
+    /// Makes the rectangle; `progress` is told of each stage as it begins, of each way that is tried.
+    ///
+    /// # Errors
+    /// [`JobError`] says why there is no rectangle, and what would work.
+    pub fn run(&self, progress: &mut dyn FnMut(Stage)) -> Result<Rect, JobError> {
+        Rect::new(self, progress)
+    }
+}

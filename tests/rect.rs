@@ -1,0 +1,94 @@
+//! Rectangles by the program: exact size, counts on the file, tiles that join, what is refused.
+
+#[allow(dead_code, reason = "each test crate uses a part of it")]
+mod common;
+
+use common::Room;
+use openwork::verify::{read_svg, tiling};
+
+/// Makes a rectangle and gives its report.
+fn rect(room: &Room, arguments: &str) -> serde_json::Value {
+    room.succeeds(&format!("rect {arguments} -o out.svg -o out.stl -o out.png --report out.json"));
+    room.json("out.json")
+}
+
+#[test]
+fn the_ink_fills_the_rectangle_in_one_piece() {
+    for (exemplar, size, width, height) in [
+        ("lattice", "50x30mm", 50.0, 30.0),
+        ("vine", "60x45mm", 60.0, 45.0),
+        ("wave", "33.3x41.7", 33.3, 41.7),
+    ] {
+        let room = Room::with(&[&format!("{exemplar}.svg")]);
+        let report = rect(&room, &format!("{exemplar}.svg --size {size} --width 9mm --components 1"));
+        let found = read_svg(&room.read("out.svg"), 0.0025).unwrap();
+        let (low, high) = found.bounds_mm.unwrap();
+        assert!(
+            (high.x - low.x - width).abs() < 0.02 && (high.y - low.y - height).abs() < 0.02,
+            "{exemplar}"
+        );
+        assert_eq!(found.components, 1, "{exemplar}");
+        assert_eq!(report["holes"], found.holes, "{exemplar}");
+        assert_eq!((&report["shells"], &report["genus"]), (&1.into(), &found.holes.into()), "{exemplar}");
+        assert_eq!(found.faults, [], "{exemplar}");
+        assert!(report["tiling"].is_null());
+        // Both directions are told.
+        for (direction, length) in [("along_u", width), ("along_v", height)] {
+            let direction = &report[direction];
+            assert!((direction["length_mm"].as_f64().unwrap() - length).abs() < 1e-9);
+            let pieces = direction["sequence"].as_array().unwrap().len();
+            assert_eq!(direction["pieces_in_result"], pieces);
+            assert!(direction["cost"].is_number() && !direction["cuts_mm"].as_array().unwrap().is_empty());
+        }
+        let chosen = report["chosen_attempt"].as_u64().unwrap() as usize;
+        assert_eq!(report["attempts"][chosen]["outcome"], "planned");
+    }
+}
+
+#[test]
+fn copies_of_a_tile_join() {
+    let room = Room::with(&["lattice.svg"]);
+    let report = rect(&room, "lattice.svg --size 40x40mm --width 10mm --components 1 --tile");
+    let file = read_svg(&room.read("out.svg"), 0.0025).unwrap();
+    let found = tiling(&file.region).unwrap();
+    assert!((found.pitch_mm - 40.0).abs().max_element() < 1e-3, "{}", found.pitch_mm);
+    assert!(found.joins_across > 0 && found.joins_up > 0);
+    assert_eq!((file.components, found.components, found.four_components), (1, 1, 1));
+    assert_eq!(report["tiling"]["holes"], found.holes);
+    assert_eq!(report["tiling"]["four_holes"], found.four_holes);
+    // A rectangle that is no tile does not join.
+    rect(&room, "lattice.svg --size 40x40mm --width 10mm --components 1");
+    let plain = read_svg(&room.read("out.svg"), 0.0025).unwrap();
+    assert!(tiling(&plain.region).is_err() || tiling(&plain.region).unwrap().joins_up == 0);
+}
+
+#[test]
+fn what_cannot_be_is_refused_by_its_name() {
+    let room = Room::with(&["vine.svg", "strands.svg"]);
+    let before = room.contents();
+    for (arguments, code, says) in [
+        ("vine.svg --size 120", 2, "such as 120x80mm"),
+        ("vine.svg --size 120x", 2, "such as 120x80mm"),
+        ("vine.svg --size 0x80mm", 2, "from 1 to 2000 mm"),
+        ("vine.svg --size 120x90000mm", 2, "from 1 to 2000 mm"),
+        ("vine.svg --size 40x30mm --width 31mm", 2, "--width"),
+        ("vine.svg --size 40x30mm --components 0", 2, "--components"),
+        ("missing.svg --size 40x30mm", 2, "missing.svg"),
+        // Smaller than any run of pieces at this height.
+        ("vine.svg --size 2x20mm --width 20mm", 3, "no strip as long as it is wide"),
+    ] {
+        room.refuses(&format!("rect {arguments} -o out.svg"), code, &[says]);
+        assert_eq!(room.contents(), before, "{arguments}");
+    }
+}
+
+#[test]
+fn the_same_bytes_again() {
+    let room = Room::with(&["vine.svg"]);
+    let files = |room: &Room| {
+        let mut report = rect(room, "vine.svg --size 50x40mm --width 10mm --components 1 --seed 4");
+        report.as_object_mut().unwrap().remove("times");
+        (room.read("out.svg"), room.read("out.stl"), room.read("out.png"), report)
+    };
+    assert!(files(&room) == files(&room));
+}
