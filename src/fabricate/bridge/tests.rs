@@ -104,8 +104,8 @@ fn brute_force_tree(region: &Region) -> f64 {
         let next = rest.min_by(|&a, &b| reached[a].total_cmp(&reached[b])).unwrap();
         inside[next] = true;
         length += reached[next];
-        for other in 0..points.len() {
-            reached[other] = reached[other].min(distance(next, other));
+        for (other, reached) in reached.iter_mut().enumerate() {
+            *reached = reached.min(distance(next, other));
         }
     }
     length
