@@ -3,7 +3,7 @@
 use glam::DVec2;
 use serde::Serialize;
 
-use super::plan::{Plan, PlanError, PlanOptions, plan};
+use super::plan::{Plan, PlanError, PlanOptions, first_fit};
 use crate::domain::BandMap;
 use crate::fabricate::{self, Bridge, BridgeError, BridgeOptions, Bridged, Counts};
 use crate::pieces::Catalogue;
@@ -82,7 +82,11 @@ pub(super) fn can_help(error: &PlanError) -> bool {
 
 /// The best plan that meets as much of the goal as can be met: the components rather than the holes, as slits
 /// across strands show less than struts across gaps.
-pub(super) fn relaxed_plan(catalogue: &Catalogue, options: &PlanOptions) -> Option<Plan> {
+pub(super) fn relaxed_plan(
+    catalogue: &Catalogue,
+    options: &PlanOptions,
+    memory_limit: usize,
+) -> Option<Plan> {
     let goal = options.goal;
     let mut tried = vec![goal];
     [
@@ -96,7 +100,7 @@ pub(super) fn relaxed_plan(catalogue: &Catalogue, options: &PlanOptions) -> Opti
         tried.push(goal);
         is_new
     })
-    .find_map(|goal| plan(catalogue, &PlanOptions { goal, ..*options }).ok())
+    .find_map(|goal| first_fit(catalogue, &PlanOptions { goal, memory_limit, ..*options }).ok())
 }
 
 /// The counts nearest to those of a part that has `has` that the goal allows.

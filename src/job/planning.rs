@@ -12,6 +12,9 @@ use crate::domain::BandMap;
 use crate::pieces::Catalogue;
 use crate::topology::{Shape, Topology};
 
+/// The memory of a search for what bridges could do, in bytes, when they were not asked for.
+const HINT_BYTES: usize = 16 << 20;
+
 /// The sequences of a job.
 pub(super) struct Runs {
     /// Each with what it adds up to.
@@ -57,7 +60,8 @@ pub(super) fn plan_runs(
     let mut hint = String::new();
     // Without bridges allowed, looking for what they could do must not take longer than the refusal itself.
     if bridging::can_help(&error) && (bridge_mm.is_some() || matches!(error, PlanError::Refused { .. })) {
-        let relaxed = || bridging::relaxed_plan(&cut.catalogue, &options);
+        let memory_limit = if bridge_mm.is_some() { options.memory_limit } else { HINT_BYTES };
+        let relaxed = || bridging::relaxed_plan(&cut.catalogue, &options, memory_limit);
         if let Some(plan) = clock.time(Stage::Solve, relaxed) {
             let run = with_topology(cut, &options, plan);
             if bridge_mm.is_some() {
