@@ -293,7 +293,7 @@ fn constraints_that_cannot_be_met() {
     refuses(
         "strands.svg --along line:120mm --components 1",
         &[
-            "exactly 1 component(s)",
+            "has 1 component(s)",
             "keeps all its strands together",
             "the nearest that can be had is --components 3",
         ],

@@ -172,7 +172,8 @@ const LISTED: usize = 6;
 
 /// That the number of sequences, the cheapest ones, and what is drawn at random are those of the enumeration.
 fn check_all(problem: &Problem<'_>, goal: Goal, admitted: Vec<&Made>) -> Result<(), TestCaseError> {
-    let mut census = Census::new(problem, goal, f64::INFINITY).expect("small cases have a census");
+    let mut census =
+        Census::new(problem, goal, f64::INFINITY, usize::MAX).expect("small cases have a census");
     prop_assert_eq!(census.ln_total().exp().round() as usize, admitted.len(), "{:?}", goal);
     let drawn = census.draw(&mut Random::new(7));
     prop_assert_eq!(drawn.is_some(), !admitted.is_empty());
@@ -367,7 +368,7 @@ fn drawn_sequences_have_their_frequencies() {
     let temperature = 0.7;
     let weight = |m: &Made| (-(m.cost as f64) / 1e6 / temperature).exp();
     let total: f64 = all.iter().map(|m| weight(m)).sum();
-    let mut census = Census::new(&problem, Goal::default(), temperature).expect("it is small");
+    let mut census = Census::new(&problem, Goal::default(), temperature, usize::MAX).expect("it is small");
     assert!((census.ln_total() - total.ln()).abs() < 1e-9);
     const DRAWS: usize = 20_000;
     let mut random = Random::new(2014);

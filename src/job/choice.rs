@@ -30,6 +30,10 @@ pub enum Choice {
 /// needed then is about e⁻⁶ as likely as none, and with a dozen to choose from at each cut there is one in some
 /// thirty pieces.
 pub const DEFAULT_TEMPERATURE: f64 = 0.16;
+/// Additions at which sequences are not counted, so that a report takes no longer than a part of a second more.
+const COUNTING_EFFORT: usize = 30_000_000;
+/// Additions at which sequences are not drawn exactly: some seconds.
+const DRAWING_EFFORT: usize = 400_000_000;
 /// How often a sequence is drawn again when it was drawn before.
 const REDRAWS: usize = 40;
 
@@ -58,7 +62,9 @@ pub fn choose(
 ) -> Result<Chosen, PlanError> {
     let cheapest = plan(catalogue, options)?;
     let problem = problem_of(catalogue, options, cheapest.epsilon);
-    let count = || Census::new(&problem, options.goal, f64::INFINITY).map(|census| census.ln_total());
+    let count = || {
+        Census::new(&problem, options.goal, f64::INFINITY, COUNTING_EFFORT).map(|census| census.ln_total())
+    };
     let ln_sequences = if counted { count() } else { None };
     let epsilon = cheapest.epsilon;
     let to_plan = |solution: Solution| finish(catalogue, options, solution, epsilon);
@@ -72,7 +78,7 @@ pub fn choose(
             (list.into_iter().map(to_plan).collect(), None)
         }
         Choice::Drawn { seed, count, temperature } => {
-            let census = Census::new(&problem, options.goal, temperature);
+            let census = Census::new(&problem, options.goal, temperature, DRAWING_EFFORT);
             let is_exact = census.is_some();
             let plans = match census {
                 Some(census) => {

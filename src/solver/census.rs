@@ -18,9 +18,7 @@ use super::table::{Table, Weigh};
 use crate::topology::{Automaton, Goal, StateId};
 
 /// Nodes at which a census is given up.
-const NODE_LIMIT: usize = 300_000;
-/// Additions, in all passes together, at which a census is given up: some seconds.
-const WORK_LIMIT: usize = 1_500_000_000;
+const NODE_LIMIT: usize = 120_000;
 
 /// All sequences of a problem that meet a goal, weighed.
 pub struct Census<'p> {
@@ -44,8 +42,9 @@ struct Triples {
 
 impl<'p> Census<'p> {
     /// The census of the sequences that meet `goal`, each weighed exp(−cost/`temperature`), the temperature in units
-    /// of the cost; a temperature of infinity counts them. `None` when there is too much to go through.
-    pub fn new(problem: &'p Problem<'p>, goal: Goal, temperature: f64) -> Option<Self> {
+    /// of the cost; a temperature of infinity counts them. `None` when it would take more than `effort` additions, of
+    /// which there are some 100 millions in a second.
+    pub fn new(problem: &'p Problem<'p>, goal: Goal, temperature: f64, effort: usize) -> Option<Self> {
         let mut census = Self {
             problem,
             automaton: Automaton::new(problem.descriptors, goal, problem.shape),
@@ -54,7 +53,7 @@ impl<'p> Census<'p> {
             total: Big::ZERO,
             open: None,
         };
-        let mut patience = WORK_LIMIT;
+        let mut patience = effort;
         for family in families(problem, goal.closed_pattern) {
             for member in family.members {
                 let mut triples = census.triples(&member.scope, &mut patience)?;
