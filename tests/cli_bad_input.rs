@@ -300,7 +300,7 @@ fn constraints_that_cannot_be_met() {
     );
     refuses(
         "strands.svg --along line:120mm --components 3 --holes 1",
-        &["exactly 1 hole(s)", "the nearest that can be had is --holes 0"],
+        &["has 1 hole(s)", "the nearest that can be had is --holes 0"],
     );
     refuses(
         "vine.svg --along line:120mm --min-feature 20mm",

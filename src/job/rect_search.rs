@@ -50,14 +50,16 @@ const GOOD_ROW: f64 = 3.0;
 /// among the cheapest; more make the search longer and the pattern no better.
 const MIRRORED_SUCCESSORS: usize = 6;
 /// So many places are tried at which a tile's strip is split.
-const SPLITS: usize = 3;
+const SPLITS: usize = 2;
 /// The most ways that are tried. More, and a refusal takes longer than anyone waits for it.
 const MOST_ATTEMPTS: usize = 12;
+/// The same for tiles, whose ways take longer and have more in common.
+const MOST_TILE_ATTEMPTS: usize = 6;
 /// The memory that the search for a strip and for its rows may take, in bytes: a way that has no sequence soon is
 /// given up for the next one.
-const STRIP_MEMORY_LIMIT: usize = 512 << 20;
+const STRIP_MEMORY_LIMIT: usize = 128 << 20;
 /// See [`STRIP_MEMORY_LIMIT`].
-const ROWS_MEMORY_LIMIT: usize = 256 << 20;
+const ROWS_MEMORY_LIMIT: usize = 16 << 20;
 /// Rows may be pressed or stretched sideways by this much to fill the width: as a band along its length.
 const STRETCH: std::ops::RangeInclusive<f64> = 0.7..=1.3;
 /// The first pass may use this part of the chord error, so that both stay within it.
@@ -125,7 +127,7 @@ pub(super) fn search(job: &RectJob, clock: &mut Clock<'_>) -> Result<Found, JobE
         map,
         clock,
         attempts: Vec::new(),
-        allowed: MOST_ATTEMPTS,
+        allowed: if job.tile { MOST_TILE_ATTEMPTS } else { MOST_ATTEMPTS },
         bridge_mm: None,
         error: None,
     };
@@ -200,7 +202,7 @@ impl Search<'_, '_> {
         for seed in seeds {
             for first_goal in first_goals(goal) {
                 // A seed changes what is cheap, not what can be.
-                if refused.contains(&first_goal) || self.attempts.len() >= self.allowed {
+                if refused.contains(&first_goal) || self.is_out_of_attempts() {
                     continue;
                 }
                 let mut job = job.clone();
@@ -240,6 +242,10 @@ impl Search<'_, '_> {
         (0..splits).find_map(|split| self.over_split(strip, split, goal, exemplar))
     }
 
+    fn is_out_of_attempts(&self) -> bool {
+        self.attempts.len() >= self.allowed
+    }
+
     /// The same for one place where a tile's strip is split.
     fn over_split(
         &mut self,
@@ -248,6 +254,9 @@ impl Search<'_, '_> {
         goal: Goal,
         exemplar: &Exemplar,
     ) -> Option<(Way, Made)> {
+        if self.is_out_of_attempts() {
+            return None;
+        }
         let mut ways: Vec<Way> = self.way(strip, split, goal, false, exemplar).into_iter().collect();
         let rows = self.job.size.height_mm() / strip.band.report.width_mm;
         let is_good = |way: &Way| way.plan.cost <= GOOD_ROW * way.job.options.weights.jump.max(1.0) * rows;
