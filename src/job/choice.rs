@@ -33,7 +33,7 @@ pub const DEFAULT_TEMPERATURE: f64 = 0.16;
 /// Additions at which sequences are not counted, so that a report takes no longer than a part of a second more.
 const COUNTING_EFFORT: usize = 30_000_000;
 /// Additions at which sequences are not drawn exactly: some seconds.
-const DRAWING_EFFORT: usize = 400_000_000;
+const DRAWING_EFFORT: usize = 150_000_000;
 /// How often a sequence is drawn again when it was drawn before.
 const REDRAWS: usize = 40;
 
