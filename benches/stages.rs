@@ -76,7 +76,7 @@ fn catalogue(exemplar: &str) -> Catalogue {
 }
 
 fn solve(catalogue: &Catalogue, shape: Shape, length_mm: f64) -> Plan {
-    let goal = Goal { components: Some(1), holes: None, closed_pattern: shape == Shape::Ring };
+    let goal = Goal { components: Some(1.into()), holes: None, closed_pattern: shape == Shape::Ring };
     let options = PlanOptions {
         shape,
         length_mm,
