@@ -65,7 +65,9 @@ struct Taken<T> {
 
 fn main() {
     let wanted = std::env::args().skip(1).find(|a| !a.starts_with("--"));
-    println!("| row | | pieces in, out | portals | paper | search | peak | labels | states | reference | peak | entries | correct paths (paper) | faster than reference, paper | cost: search, reference | reference without counting holes |");
+    println!(
+        "| row | | pieces in, out | portals | paper | search | peak | labels | states | reference | peak | entries | correct paths (paper) | faster than reference, paper | cost: search, reference | reference without counting holes |"
+    );
     println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     let mut sum = Duration::ZERO;
     for row in &ROWS {
@@ -78,11 +80,7 @@ fn main() {
 
 /// Searches a row's problem both ways; the time of the search.
 fn print(row: &Row) -> Duration {
-    let goal = Goal {
-        components: Some(1.into()),
-        holes: None,
-        closed_pattern: row.shape == Shape::Ring,
-    };
+    let goal = Goal { components: Some(1.into()), holes: None, closed_pattern: row.shape == Shape::Ring };
     let (instance, length) = instance(row, goal);
     let problem = instance.problem(row.shape, length);
     let ours = take(31, || solve(&problem, goal));
@@ -109,7 +107,11 @@ fn print(row: &Row) -> Duration {
         problem.pieces(),
         solution.sequence.len(),
         row.portals,
-        if row.printed_s < 0.1 { format!("{} ms", row.printed_s * 1e3) } else { format!("{} s", row.printed_s) },
+        if row.printed_s < 0.1 {
+            format!("{} ms", row.printed_s * 1e3)
+        } else {
+            format!("{} s", row.printed_s)
+        },
         ms(ours.median),
         bytes(ours.peak_bytes),
         solution.labels,
@@ -137,7 +139,8 @@ fn instance(row: &Row, goal: Goal) -> (Instance, u32) {
         let instance = Instance::new(Sizes { pieces: row.pieces, portals: row.portals, seed });
         let mut length = row.pieces_out as f64 * instance.mean_width();
         for _ in 0..4 {
-            let Ok(Solution { sequence, .. }) = solve(&instance.problem(row.shape, length.round() as u32), goal)
+            let Ok(Solution { sequence, .. }) =
+                solve(&instance.problem(row.shape, length.round() as u32), goal)
             else {
                 break;
             };
