@@ -23,8 +23,10 @@ use crate::topology::Automaton;
 
 /// Labels after which the dear estimates are made. Most goals near the exemplar's own topology need fewer.
 const SHORT: usize = 20_000;
-/// Labels by which a threshold may grow at least.
-const FEW: usize = 2_000;
+/// Runs that a threshold lets in at least of those that the last one left out.
+const FEW: usize = 8;
+/// Labels for each run more that a threshold lets in. Each is going to be extended to a few of its own.
+const LABELS_PER_RUN: usize = 16;
 /// Runs of each length that the beam keeps; widened until a run is found.
 const BEAMS: [usize; 3] = [300, 3_000, 30_000];
 
@@ -36,12 +38,13 @@ pub(super) fn cheapest(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -> 
         problem,
         families,
         threshold,
-        least: threshold,
         floor: threshold,
         best: None,
         by_drift: false,
         has_learned: automaton.goal().is_free(),
+        has_learned_drift: false,
         labels: 0,
+        labels_before_drift: 0,
     };
     if problem.variety.is_some() {
         return search.varied(automaton);
@@ -54,15 +57,17 @@ struct Cheapest<'p> {
     families: Vec<Family>,
     /// Runs of at most this estimate are looked at.
     threshold: Cost,
-    /// The least estimate there is.
-    least: Cost,
     /// No run that meets the constraints costs less.
     floor: Cost,
     /// The best so far: pieces, cost, cost with penalties.
     best: Option<(Vec<usize>, Cost, Cost)>,
     by_drift: bool,
+    /// Whether the estimates that know topology, and those that know the drift, were found to be worth while.
     has_learned: bool,
+    has_learned_drift: bool,
     labels: usize,
+    /// Labels that were made before runs were told apart by drift.
+    labels_before_drift: usize,
 }
 
 /// What the walks over all families with one threshold came to.
@@ -75,25 +80,24 @@ struct Round {
 impl Cheapest<'_> {
     fn solve(mut self, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
         while self.threshold != NEVER {
-            let limit = self.label_limit(automaton);
-            let limit = if self.has_learned { limit } else { limit.min(SHORT) };
+            let most = self.label_limit(automaton);
+            let limit = if self.is_learned() { most } else { most.min(self.labels_before_drift + SHORT) };
             let round = self.round(automaton, limit);
             if round.is_cut_short {
-                if self.has_learned {
+                if self.is_learned() {
                     return self.beam(automaton);
                 }
-                self.has_learned = true;
+                (self.has_learned, self.has_learned_drift) = (true, self.by_drift);
                 self.learn(automaton);
                 continue;
             }
             let best = self.best.as_ref().map_or(NEVER, |&(_, _, total)| total);
             if !self.by_drift && round.drifted_at < best && round.drifted_at <= self.threshold {
+                // Up to there, nothing was left out.
                 self.by_drift = true;
-                let problem = self.problem;
-                for family in &mut self.families {
-                    family.estimates.learn_drift(problem, automaton, &family.scope);
-                    family.look_again(problem, automaton);
-                }
+                self.labels_before_drift = self.labels;
+                self.floor = self.floor.max(round.drifted_at);
+                self.threshold = round.drifted_at;
                 self.raise();
                 continue;
             }
@@ -103,9 +107,10 @@ impl Cheapest<'_> {
                 break;
             }
             self.floor = self.floor.max(round.beyond.least());
-            let many = self.labels > SHORT;
-            self.threshold = round.beyond.next(self.labels.max(FEW));
-            self.has_learned |= many;
+            self.threshold = round.beyond.next((self.labels / LABELS_PER_RUN).max(FEW));
+            if self.labels - self.labels_before_drift > SHORT {
+                (self.has_learned, self.has_learned_drift) = (true, self.by_drift);
+            }
             if self.has_learned {
                 self.learn(automaton);
                 let problem = self.problem;
@@ -123,7 +128,7 @@ impl Cheapest<'_> {
     /// Walks over all members with the threshold.
     fn round(&mut self, automaton: &mut Automaton<'_>, limit: usize) -> Round {
         let problem = self.problem;
-        let beyond = Beyond::new(self.threshold, self.threshold - self.least);
+        let beyond = Beyond::new(self.threshold);
         let mut round = Round { drifted_at: NEVER, beyond, is_cut_short: false };
         for family in &mut self.families {
             // Once all rings through a first piece have been seen, it need not be looked at again.
@@ -158,7 +163,7 @@ impl Cheapest<'_> {
                     width: usize::MAX,
                     label_limit: limit.saturating_sub(self.labels),
                 };
-                let beyond = Beyond::new(self.threshold, self.threshold - self.least);
+                let beyond = Beyond::new(self.threshold);
                 let Passage { found, drifted_at, beyond, labels, is_cut_short } = walk.run(automaton, beyond);
                 member.keep_table(table);
                 self.labels += labels;
@@ -183,21 +188,29 @@ impl Cheapest<'_> {
         let (problem, goal) = (self.problem, automaton.goal());
         self.raise();
         loop {
-            let is_due =
-                |f: &&mut Family| !f.has_learned && f.estimate() <= self.threshold && f.estimate() != NEVER;
+            let by_drift = self.has_learned_drift;
+            let is_due = |f: &&mut Family| {
+                (!f.has_learned || (by_drift && !f.has_learned_drift))
+                    && f.estimate() <= self.threshold
+                    && f.estimate() != NEVER
+            };
             let Some(family) = self.families.iter_mut().filter(is_due).min_by_key(|f| f.estimate()) else {
                 return;
             };
-            family.has_learned = true;
-            if is_never(problem, automaton, &family.scope) {
+            let is_new = !std::mem::replace(&mut family.has_learned, true);
+            if is_new && is_never(problem, automaton, &family.scope) {
                 family.members.clear();
             } else {
-                family.learn_topology(problem, automaton);
-                if self.by_drift {
+                if is_new {
+                    family.learn_topology(problem, automaton);
+                }
+                if by_drift {
+                    family.has_learned_drift = true;
                     family.estimates.learn_drift(problem, automaton, &family.scope);
                     family.look_again(problem, automaton);
                 }
-                if !goal.is_free()
+                if is_new
+                    && !goal.is_free()
                     && !family.estimates.is_exact()
                     && is_out_of_range(problem, goal, &family.scope)
                 {
@@ -206,6 +219,11 @@ impl Cheapest<'_> {
             }
             self.raise();
         }
+    }
+
+    /// Whether all estimates that are of use were found to be worth while.
+    fn is_learned(&self) -> bool {
+        self.has_learned && (self.has_learned_drift || !self.by_drift)
     }
 
     /// Lifts the threshold to the least estimate.
@@ -296,7 +314,7 @@ impl Cheapest<'_> {
             width,
             label_limit,
         };
-        let passage = walk.run(automaton, Beyond::new(NEVER - 1, 0));
+        let passage = walk.run(automaton, Beyond::new(NEVER - 1));
         member.keep_table(table);
         self.labels += passage.labels;
         self.best = passage.found.or(self.best.take());

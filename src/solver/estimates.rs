@@ -22,6 +22,9 @@ use crate::topology::{Automaton, Descriptor, Goal, Shape, StateId};
 const NODE_LIMIT: usize = 60_000;
 /// Additions in a pass at which it is not begun: about a second.
 const WORK_LIMIT: usize = 500_000_000;
+/// Additions in the pass that knows the drift at which it is not begun. Without it, a long run that leaves the band
+/// is searched blindly, which takes more.
+const DRIFT_WORK_LIMIT: usize = 40 * WORK_LIMIT;
 /// The portals of classes that are told from the rest: the first that is affordable.
 const CLASS_SIZES: [usize; 4] = [64, 4, 2, 1];
 /// Bytes of a table up to which all its rows are kept.
@@ -67,7 +70,10 @@ impl Estimates {
         {
             (self.exact, self.is_by_drift) = (Some(both), true);
         } else if self.drifts.is_none() && drifts.saturating_mul(problem.pieces()) <= NODE_LIMIT {
-            self.drifts = affordable(problem, of_drifts(problem, scope));
+            let graph = of_drifts(problem, scope);
+            let work = graph.all_edges().len().saturating_mul(*problem.window.end() as usize);
+            self.drifts = (work <= DRIFT_WORK_LIMIT)
+                .then(|| Table::new(graph, problem.window.clone(), TABLE_BUDGET, |cost| cost));
         }
     }
 

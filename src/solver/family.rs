@@ -23,6 +23,8 @@ pub(super) struct Family {
     pub(super) estimates: Estimates,
     /// Whether it was.
     pub(super) has_learned: bool,
+    /// Whether what was learned knows the drift.
+    pub(super) has_learned_drift: bool,
     /// Whether each member is searched by itself, with its own end.
     pub(super) is_ring: bool,
 }
@@ -113,8 +115,14 @@ impl Family {
         if let ([only], false) = (&mut members[..], is_ring) {
             only.table = Some(Box::new(table));
         }
-        let mut family =
-            Self { scope, members, estimates: Estimates::default(), has_learned: false, is_ring };
+        let mut family = Self {
+            scope,
+            members,
+            estimates: Estimates::default(),
+            has_learned: false,
+            has_learned_drift: false,
+            is_ring,
+        };
         family.sort();
         family
     }

@@ -48,30 +48,30 @@ pub(super) struct Passage {
     pub(super) is_cut_short: bool,
 }
 
-/// How the estimates of runs that were left out are distributed above the threshold.
+/// Buckets for each doubling of the distance.
+const PER_DOUBLING: u32 = 4;
+
+/// How the estimates of runs that were left out are distributed above the threshold. Buckets grow with the
+/// distance from it, so that costs of any scale are told apart.
 #[derive(Debug, Clone)]
 pub(super) struct Beyond {
     threshold: Cost,
-    /// The width of a bucket.
-    width: Cost,
-    buckets: [u32; 128],
+    buckets: [u32; (64 * PER_DOUBLING) as usize],
     /// The least.
     least: Cost,
 }
 
 impl Beyond {
-    /// No runs yet, above a threshold so far over the least estimate there is.
-    pub(super) fn new(threshold: Cost, slack: Cost) -> Self {
-        Self { threshold, width: (slack + 1_000_000) / 64, buckets: [0; 128], least: NEVER }
+    /// No runs yet, above a threshold.
+    pub(super) fn new(threshold: Cost) -> Self {
+        Self { threshold, buckets: [0; (64 * PER_DOUBLING) as usize], least: NEVER }
     }
 
     /// Counts a run that was left out.
     pub(super) fn leave_out(&mut self, estimate: Cost) {
         self.least = self.least.min(estimate);
-        let bucket = (estimate - self.threshold) / self.width;
-        if let Some(bucket) = self.buckets.get_mut(bucket as usize) {
-            *bucket = bucket.saturating_add(1);
-        }
+        let bucket = &mut self.buckets[bucket(estimate - self.threshold)];
+        *bucket = bucket.saturating_add(1);
     }
 
     /// Adds what another walk with the same threshold left out.
@@ -82,27 +82,45 @@ impl Beyond {
         }
     }
 
-    /// A threshold that lets in about `labels` of the runs that were left out; [`NEVER`] when there were none.
-    pub(super) fn next(&self, labels: usize) -> Cost {
+    /// A threshold that lets in about so many of the runs that were left out; [`NEVER`] when there were none.
+    pub(super) fn next(&self, runs: usize) -> Cost {
         if self.least == NEVER {
             return NEVER;
         }
         let mut sum = 0usize;
-        let mut at = self.threshold;
-        for &count in &self.buckets {
+        let mut at = self.least;
+        for (bucket, &count) in self.buckets.iter().enumerate().filter(|&(_, &count)| count > 0) {
             sum += count as usize;
-            if sum > labels {
+            if sum > runs {
                 break;
             }
-            at += self.width;
+            at = at.max(self.threshold.saturating_add(end_of(bucket)));
         }
-        at.max(self.least)
+        at.min(NEVER - 1)
     }
 
     /// The least estimate of a run that was left out; [`NEVER`] when there was none.
     pub(super) fn least(&self) -> Cost {
         self.least
     }
+}
+
+/// The bucket of a distance from the threshold.
+fn bucket(distance: Cost) -> usize {
+    let doublings = distance.max(1).ilog2();
+    // The bits after the first say how far it is to the next doubling.
+    let part = match doublings.checked_sub(PER_DOUBLING.ilog2()) {
+        Some(shift) => distance >> shift,
+        None => distance << (PER_DOUBLING.ilog2() - doublings),
+    };
+    (doublings * PER_DOUBLING) as usize + part as usize % PER_DOUBLING as usize
+}
+
+/// The greatest distance that falls into a bucket.
+fn end_of(bucket: usize) -> Cost {
+    let (doublings, part) = (bucket as u32 / PER_DOUBLING, bucket as u32 % PER_DOUBLING);
+    let next = (u128::from(PER_DOUBLING + part + 1) << doublings).div_ceil(u128::from(PER_DOUBLING));
+    Cost::try_from(next - 1).unwrap_or(NEVER)
 }
 
 impl Walk<'_> {
@@ -264,5 +282,36 @@ impl Repetition {
         passed.iter().for_each(|at| {
             self.correlations.remove(at);
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        // A bucket holds its distances and no greater ones.
+        #[test]
+        fn buckets_end_where_the_next_begins(distance in prop_oneof![1u64..40, 1u64..1 << 40, 1u64 << 60..NEVER]) {
+            let end = end_of(bucket(distance));
+            prop_assert!(end >= distance && end - distance <= distance / 4 + 1);
+            prop_assert!(end == NEVER || bucket(end) == bucket(distance));
+            prop_assert!(end >= NEVER - 1 || bucket(end + 1) > bucket(end));
+        }
+
+        #[test]
+        fn a_threshold_lets_in_the_nearest_and_no_more_than_wanted(
+            mut distances in prop::collection::vec(1u64..1_000_000, 1..50),
+            wanted in 0usize..60,
+        ) {
+            let mut beyond = Beyond::new(1_000);
+            distances.iter().for_each(|d| beyond.leave_out(1_000 + d));
+            let next = beyond.next(wanted);
+            distances.sort_unstable();
+            let let_in = distances.iter().filter(|&&d| 1_000 + d <= next).count();
+            prop_assert!(next >= 1_000 + distances[0]);
+            prop_assert!(let_in <= wanted || next == 1_000 + distances[0]);
+        }
     }
 }
