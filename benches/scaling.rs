@@ -14,7 +14,7 @@ use std::time::Instant;
 
 use instances::{Instance, Sizes};
 use openwork::exemplar::{Exemplar, Limits, ReadOptions};
-use openwork::job::{PlanOptions, plan};
+use openwork::job::{DEFAULT_MEMORY_LIMIT, PlanOptions, plan};
 use openwork::pieces::{Catalogue, CostWeights};
 use openwork::planar::Tolerances;
 use openwork::reeb::{ReebGraph, Slicing, SlicingRule};
@@ -74,6 +74,7 @@ fn by_length(exemplar: &str, most: usize) -> Curve {
             weights: CostWeights::default(),
             seed: None,
             variety: None,
+            memory_limit: DEFAULT_MEMORY_LIMIT,
         };
         let (plan, ms, mib) = take(|| plan(&catalogue, &options));
         let plan = match plan {

@@ -24,17 +24,20 @@ const NODE_LIMIT: usize = 60_000;
 const WORK_LIMIT: usize = 500_000_000;
 /// Additions in the pass that knows the drift at which it is not begun. Without it, a long run that leaves the band
 /// is searched blindly, which takes more.
-const DRIFT_WORK_LIMIT: usize = 40 * WORK_LIMIT;
+const DRIFT_WORK_LIMIT: usize = 4 * WORK_LIMIT;
 /// The portals of classes that are told from the rest: the first that is affordable.
 const CLASS_SIZES: [usize; 4] = [64, 4, 2, 1];
 /// Bytes of a table up to which all its rows are kept.
 pub(super) const TABLE_BUDGET: usize = 256 << 20;
 
+/// Pairs of piece and state, with the drift where it is known, and what completing a run from them costs.
+type Exact = (Explored<(StateId, i32)>, Table<Cost>);
+
 /// The estimates that are dear to make, as far as they were made.
 #[derive(Default)]
 pub(super) struct Estimates {
     /// Nodes by state and, once runs are told apart by it, drift.
-    exact: Option<(Explored<(StateId, i32)>, Table<Cost>)>,
+    exact: Option<Exact>,
     is_by_drift: bool,
     classes: Option<Classes>,
     drifts: Option<Table<Cost>>,
@@ -134,7 +137,7 @@ fn exact(
     automaton: &mut Automaton<'_>,
     scope: &Scope,
     by_drift: bool,
-) -> Option<(Explored<(StateId, i32)>, Table<Cost>)> {
+) -> Option<Exact> {
     let mut explored = triples(problem, automaton, scope, by_drift, NODE_LIMIT)?;
     let table = affordable(problem, std::mem::take(&mut explored.graph))?;
     Some((explored, table))
@@ -188,6 +191,9 @@ struct Classes {
     missing: usize,
 }
 
+/// The numbers of the classes that a join leads to, and what χ becomes more.
+type JoinedClasses = (Vec<u32>, i32);
+
 /// Numbers of partitions.
 #[derive(Default)]
 struct Names {
@@ -196,7 +202,7 @@ struct Names {
     ids: FxHashMap<Descriptor, u32>,
     partitions: Vec<Descriptor>,
     /// What a join with a piece makes of a partition: the numbers of its classes and what χ becomes more.
-    joins: FxHashMap<(u32, u32), Option<(Vec<u32>, i32)>>,
+    joins: FxHashMap<(u32, u32), Option<JoinedClasses>>,
 }
 
 impl Names {
@@ -237,7 +243,7 @@ impl Names {
 
     /// The classes of a run with these connections that `piece` is joined to, and by how much χ grows; `None`
     /// when something is closed that should not be.
-    fn join(&mut self, problem: &Problem<'_>, id: u32, piece: usize) -> Option<(Vec<u32>, i32)> {
+    fn join(&mut self, problem: &Problem<'_>, id: u32, piece: usize) -> Option<JoinedClasses> {
         if let Some(known) = self.joins.get(&(id, piece as u32)) {
             return known.clone();
         }

@@ -145,10 +145,9 @@ impl Labels {
             }
         }
         let mut moved = vec![NONE; self.store.len()];
-        let mut next = 0u32;
-        for (at, _) in is_needed.iter().enumerate().filter(|(_, needed)| **needed) {
+        let needed = (0..is_needed.len()).filter(|&at| is_needed[at]);
+        for (next, at) in (0u32..).zip(needed) {
             moved[at] = next;
-            next += 1;
         }
         let to = |at: u32| if at == NONE { NONE } else { moved[at as usize] };
         let mut at = 0;

@@ -3,9 +3,9 @@
 //! The layer of the search is the length of the run in bins, not the number of its pieces, so that the target
 //! length is met by construction (Zhou 2014 §3.6.2 fills a table by number of pieces and meets the length by
 //! luck). A label is a run: its last piece, its state of the [`Automaton`], its cost. Walks along the length
-//! ([`pass`]) look at the runs whose estimate is within a threshold, which grows until a run is found
-//! ([`cheapest`]); the estimates are admissible ([`estimates`]): the same search with something ignored, run
-//! backwards. Rings are opened at their narrowest cut ([`family`]).
+//! (`pass`) look at the runs whose estimate is within a threshold, which grows until a run is found
+//! (`cheapest`); the estimates are admissible (`estimates`): the same search with something ignored, run
+//! backwards. Rings are opened at their narrowest cut (`family`).
 //!
 //! What this room promises to the next: a [`Solution`] meets every constraint of its [`Problem`], and no
 //! other sequence that does costs less by more than its `gap`. Coordinates are not known here.
