@@ -30,9 +30,10 @@ pub enum Choice {
 /// needed then is about e⁻⁶ as likely as none, and with a dozen to choose from at each cut there is one in some
 /// thirty pieces.
 pub const DEFAULT_TEMPERATURE: f64 = 0.16;
-/// Additions at which sequences are not counted, so that a report takes no longer than a part of a second more.
+/// Additions at which sequences are not counted beside the cheapest, so that a report takes no longer than a part of
+/// a second more.
 const COUNTING_EFFORT: usize = 30_000_000;
-/// Additions at which sequences are not drawn exactly: some seconds.
+/// Additions at which sequences are not drawn exactly, nor counted: a second or two.
 const DRAWING_EFFORT: usize = 150_000_000;
 /// How often a sequence is drawn again when it was drawn before.
 const REDRAWS: usize = 40;
@@ -62,9 +63,8 @@ pub fn choose(
 ) -> Result<Chosen, PlanError> {
     let cheapest = plan(catalogue, options)?;
     let problem = problem_of(catalogue, options, cheapest.epsilon);
-    let count = || {
-        Census::new(&problem, options.goal, f64::INFINITY, COUNTING_EFFORT).map(|census| census.ln_total())
-    };
+    let effort = if choice == Choice::Cheapest { COUNTING_EFFORT } else { DRAWING_EFFORT };
+    let count = || Census::new(&problem, options.goal, f64::INFINITY, effort).map(|census| census.ln_total());
     let ln_sequences = if counted { count() } else { None };
     let epsilon = cheapest.epsilon;
     let to_plan = |solution: Solution| finish(catalogue, options, solution, epsilon);

@@ -69,8 +69,8 @@ pub(super) const EPSILONS: [f64; 4] = [0.05, 0.1, 0.2, 0.3];
 /// The smallest bin, as a part of the narrowest piece: smaller, and the search takes longer for a length no truer.
 const BIN: f64 = 0.75;
 /// Each piece has at least one bin, so large bins lengthen the narrow pieces. They may not lengthen the exemplar by
-/// more than this part, a fifth of the first ε.
-const BIN_ERROR: f64 = 0.01;
+/// more than this part: a band may use mostly narrow ones, and misses its length by several times as much.
+const BIN_ERROR: f64 = 0.004;
 /// What bins grow by when larger ones are tried.
 const BIN_STEP: f64 = 1.2;
 /// The most bins in a band: beyond, bins grow and lengths are less true, which the report shows.

@@ -1,8 +1,9 @@
 //! The k cheapest sequences, none twice.
 //!
-//! The pass over all triples of piece, state and drift gives the exact cost of the best completion of any run.
-//! Runs are extended in the order of it: the first to be complete is the cheapest sequence, the next the second
-//! cheapest, and so on. Rings that are rotations of each other are one.
+//! The pass over all pairs of piece and state gives the exact cost of the best completion of any run. Runs are
+//! extended in the order of it: the first to be complete is the cheapest sequence, the next the second cheapest,
+//! and so on. What leaves the band is passed over; where that is too much, the pass is taken with the drift. Rings
+//! that are rotations of each other are one.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap};
@@ -16,14 +17,21 @@ use crate::topology::{Automaton, Goal, Shape, StateId};
 
 /// Nodes at which it is given up.
 const NODE_LIMIT: usize = 300_000;
-/// Runs at which it is given up.
-const MOST_RUNS: usize = 20_000_000;
+/// Runs at which the drift is taken into the pass, and runs at which it is given up.
+const MOST_RUNS: [usize; 2] = [1_000_000, 20_000_000];
 
 /// The `k` cheapest sequences that meet `goal`, or all if there are fewer, cheapest first.
 ///
 /// # Errors
 /// [`Unsolved::Infeasible`] when there is none, [`Unsolved::TooLarge`] when there is too much to go through.
 pub fn best(problem: &Problem<'_>, goal: Goal, k: usize) -> Result<Vec<Solution>, Unsolved> {
+    match list(problem, goal, k, false) {
+        Err(Unsolved::TooLarge { .. }) => list(problem, goal, k, true),
+        found => found,
+    }
+}
+
+fn list(problem: &Problem<'_>, goal: Goal, k: usize, by_drift: bool) -> Result<Vec<Solution>, Unsolved> {
     let mut automaton = Automaton::new(problem.descriptors, goal, problem.shape);
     let mut lists: Vec<Listing> = Vec::new();
     let mut members: Vec<(Cost, Scope)> = families(problem, goal.closed_pattern)
@@ -40,7 +48,7 @@ pub fn best(problem: &Problem<'_>, goal: Goal, k: usize) -> Result<Vec<Solution>
         // A member is opened when nothing cheaper is left.
         if members.last().is_some_and(|(estimate, _)| *estimate <= next) {
             let (_, scope) = members.pop().expect("there is a last member");
-            let list = Listing::new(problem, &mut automaton, scope);
+            let list = Listing::new(problem, &mut automaton, scope, by_drift);
             lists.push(list.ok_or(Unsolved::TooLarge { labels: runs })?);
             continue;
         }
@@ -49,16 +57,27 @@ pub fn best(problem: &Problem<'_>, goal: Goal, k: usize) -> Result<Vec<Solution>
             break;
         };
         runs += 1;
-        if runs > MOST_RUNS {
+        if runs > MOST_RUNS[usize::from(by_drift)] {
             return Err(Unsolved::TooLarge { labels: runs });
         }
         if let Some((cost, sequence)) = list.advance(problem)
+            && stays_in_band(problem, &sequence)
             && seen.insert(canonical(&sequence, problem.shape))
         {
             found.push(Solution { sequence, cost, gap: 0, labels: runs, states: automaton.len() });
         }
     }
     if found.is_empty() { Err(Unsolved::Infeasible) } else { Ok(found) }
+}
+
+/// Whether a run stays within the limit of the drift all along.
+fn stays_in_band(problem: &Problem<'_>, sequence: &[usize]) -> bool {
+    let rise = |pair: &[usize]| problem.steps[pair[0]].iter().find(|s| s.to == pair[1]).map_or(0, |s| s.rise);
+    let mut drift = 0i32;
+    sequence.windows(2).all(|pair| {
+        drift = drift.saturating_add(rise(pair));
+        drift.saturating_abs() <= problem.drift_limit
+    })
 }
 
 /// The same for all rotations of a ring.
@@ -90,8 +109,13 @@ struct Listing {
 }
 
 impl Listing {
-    fn new(problem: &Problem<'_>, automaton: &mut Automaton<'_>, scope: Scope) -> Option<Self> {
-        let mut explored = triples(problem, automaton, &scope, true, NODE_LIMIT)?;
+    fn new(
+        problem: &Problem<'_>,
+        automaton: &mut Automaton<'_>,
+        scope: Scope,
+        by_drift: bool,
+    ) -> Option<Self> {
+        let mut explored = triples(problem, automaton, &scope, by_drift, NODE_LIMIT)?;
         let graph = std::mem::take(&mut explored.graph);
         let table = Table::new(graph, problem.window.clone(), 4 * TABLE_BUDGET, |cost| cost);
         let mut list = Self { explored, table, runs: Vec::new(), open: BinaryHeap::new() };
