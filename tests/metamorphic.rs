@@ -1,7 +1,7 @@
 //! What does not change an ornament changes neither what can be made of it nor what that costs: moving the exemplar,
 //! scaling it, adding a point on an edge, and drawing it left for right.
 
-use openwork::pieces::{Catalogue, CostWeights};
+use openwork::pieces::{Catalogue, CostWeights, Endpoint, Piece};
 use openwork::planar::{FillRule, Grid, GridPoint, Region, Tolerances};
 use openwork::reeb::{ReebGraph, Slicing, SlicingRule};
 use openwork::solver::{Problem, Step, solve};
@@ -49,10 +49,10 @@ fn region(boxes: &Boxes, change: Change) -> Region {
     Region::fill(Grid::for_extent(100.0).unwrap(), &paths, FillRule::EvenOdd)
 }
 
-/// The portals on the left and the right of each piece, with what is closed in it and χ; and the cost of the best run
-/// for each goal, in millionths.
+/// The heights of the portal endpoints on the left and the right of each piece in micrometres, with what is closed in it
+/// and χ; and the cost of the best run for each goal, in millionths.
 type Answers = (Vec<Sides>, Vec<Option<u64>>);
-type Sides = ([usize; 2], u32, i64);
+type Sides = ([Vec<i64>; 2], u32, i64);
 
 fn answers(boxes: &Boxes, change: Change, lines: usize, window: (u32, u32)) -> Option<Answers> {
     let region = region(boxes, change);
@@ -92,8 +92,10 @@ fn answers(boxes: &Boxes, change: Change, lines: usize, window: (u32, u32)) -> O
         assert!(run.finished().is_some_and(|topology: Topology| goal.admits(topology)));
         Some(solution.cost)
     };
-    let sides = |d: &Descriptor| ([d.left().len(), d.right().len()], d.closed(), d.euler());
-    let pieces = catalogue.descriptors().iter().map(sides).collect();
+    let heights = |ends: &[Endpoint]| ends.iter().map(|e| (e.y_mm * 1e3).round() as i64).collect::<Vec<_>>();
+    let sides =
+        |p: &Piece| ([heights(&p.left), heights(&p.right)], p.descriptor.closed(), p.descriptor.euler());
+    let pieces = catalogue.pieces().iter().map(sides).collect();
     Some((pieces, goals.map(cost).collect()))
 }
 
@@ -111,20 +113,23 @@ proptest! {
         let changes =
             [Change::Moved(shift.0, shift.1), Change::Scaled(2), Change::Dense(1), Change::Mirrored];
         for change in changes {
+            let is_mirror = matches!(change, Change::Mirrored);
             let Some((changed_pieces, changed)) = answers(&boxes, change, lines, window) else {
-                prop_assert!(false, "{change:?} has other cuts");
-                unreachable!()
+                prop_assert!(is_mirror, "{change:?} has other cuts");
+                continue;
             };
             // A cut that would run along an edge gives way to one side, which a mirror does not know.
-            let turned = |&([left, right], closed, euler): &Sides| ([right, left], closed, euler);
-            let is_mirrored = pieces.iter().rev().map(turned).eq(changed_pieces.iter().copied());
-            if matches!(change, Change::Mirrored) && !is_mirrored {
+            let turned = |([left, right], closed, euler): &Sides| {
+                ([right.clone(), left.clone()], *closed, *euler)
+            };
+            let is_mirrored = pieces.iter().rev().map(turned).eq(changed_pieces);
+            if is_mirror && !is_mirrored {
                 continue;
             }
             for (a, b) in plain.iter().zip(&changed) {
-                // Each join is rounded to a millionth by itself.
+                // Each join is rounded to a millionth by itself, and cuts to a grid that does not scale.
                 let agree = match (a, b) {
-                    (Some(a), Some(b)) => a.abs_diff(*b) <= 2 * u64::from(window.1) + 2,
+                    (Some(a), Some(b)) => a.abs_diff(*b) <= 2 * u64::from(window.1) + 2 + a / 10_000,
                     (a, b) => a == b,
                 };
                 prop_assert!(agree, "{:?}: {:?} instead of {:?}", change, changed, plain);
