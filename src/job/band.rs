@@ -2,36 +2,32 @@
 
 use std::path::Path;
 
+use glam::DVec2;
+
 use super::bridging::{self, BridgesReport};
-use super::builder::{BandJob, SlicingChoice};
-use super::certificate::{Certificate, FileDigest, sha256};
-use super::choice::Choice;
+use super::builder::BandJob;
+use super::certificate::{FileDigest, sha256};
+use super::cut::{Cut, read_exemplar, slice};
+use super::describe::describe;
 use super::error::JobError;
 use super::extrude::{check_stl, name};
 use super::output::{Format, Output, Pending, Target, persist};
 use super::part::{Part, PartError};
 use super::plan::Plan;
 use super::planning::plan_runs;
-use super::report::{
-    BandReport, DroppedCutReport, FallbackReport, InputReport, SeamReport, StageTime, StitchReport,
-};
+use super::report::{BandReport, InputReport};
 use super::stage::{Clock, Stage};
 use crate::domain::{BandMap, CurveSpec, PlanarCurve};
-use crate::exemplar::{Exemplar, Limits, ReadOptions, read_path};
+use crate::exemplar::{Limits, read_path};
 use crate::export::{self, SvgDocument, SvgOptions};
 use crate::fabricate::{self, Counts};
 use crate::fit::{FitOptions, Outline, Prepared, Sides, StitchMethod};
-use crate::pieces::{Catalogue, CostWeights};
 use crate::planar::Region;
-use crate::reeb::{ReebGraph, Slicing, SlicingRule};
-use crate::solver::{autocorrelation, evenness, longest_repeat};
-use crate::topology::{Shape, Topology};
+use crate::topology::Topology;
 use crate::verify::{self, Expected, Mismatch, Narrowest, SvgReport};
-use glam::DVec2;
 
-/// The chord error is shared out: this part is for flattening the exemplar, the others for bending, for mapping and
-/// for fitting curves to the SVG.
-pub const READ_SHARE: f64 = 0.25;
+/// The chord error is shared out: these parts are for bending, for mapping and for fitting curves to the SVG, and
+/// what is left for flattening the exemplar.
 const FIT_SHARE: f64 = 0.125;
 const MAP_SHARE: f64 = 0.125;
 const SVG_SHARE: f64 = 0.5;
@@ -60,45 +56,6 @@ pub struct Band {
     /// What the part has, with bridges.
     pub(super) counts: Counts,
     pub(super) report: BandReport,
-}
-
-/// An exemplar cut into pieces.
-pub(super) struct Cut {
-    exemplar: Exemplar,
-    region: Region,
-    pub(super) slicing: Slicing,
-    pub(super) catalogue: Catalogue,
-    pub(super) weights: CostWeights,
-    mirror: bool,
-    pub(super) height_mm: f64,
-    /// What becomes of the sides of the band.
-    pub(super) sides: Sides,
-    /// Parts and holes that are too small to be told from nothing at the chord error.
-    specks: Vec<DVec2>,
-}
-
-impl Cut {
-    /// What is cut.
-    pub(super) fn region(&self) -> &Region {
-        &self.region
-    }
-
-    /// Makes the catalogue again, after cuts were left out or weights were changed.
-    pub(super) fn weigh(&mut self, own_ends_only: bool) {
-        let catalogue = catalogue(&self.region, &self.slicing, &self.weights, self.mirror);
-        self.catalogue = if own_ends_only { catalogue.with_own_ends_only() } else { catalogue };
-    }
-
-    /// Weighs every join instead of the cheapest few; `false` if that changes nothing.
-    pub(super) fn admit_all_successors(&mut self) -> bool {
-        let pieces = self.catalogue.originals();
-        if self.weights.successors >= pieces {
-            return false;
-        }
-        self.weights.successors = pieces;
-        self.weigh(self.catalogue.has_own_ends_only());
-        true
-    }
 }
 
 impl Band {
@@ -202,11 +159,8 @@ impl Band {
         progress: &mut dyn FnMut(Stage),
     ) -> Result<BandReport, JobError> {
         self.job.check_outputs(outputs, report_file)?;
-        let (report, mut pending) = self.deliver(outputs, None, progress)?;
-        if let Some(target) = report_file {
-            pending.push(Pending::new(target, report.to_json().into_bytes())?);
-        }
-        persist(pending)?;
+        let (report, pending) = self.deliver(outputs, None, progress)?;
+        persist(pending, report_file.map(|target| (target, report.to_json())))?;
         Ok(report)
     }
 
@@ -355,15 +309,6 @@ impl Band {
     }
 }
 
-pub(super) fn read_exemplar(job: &BandJob) -> Result<Exemplar, JobError> {
-    let options = ReadOptions {
-        chord_mm: job.tolerances.chord_mm() * READ_SHARE,
-        target_height_mm: job.options.width_mm,
-        limits: Limits::default(),
-    };
-    Ok(Exemplar::read(&job.options.exemplar, &options)?)
-}
-
 fn read_curve(
     spec: &CurveSpec,
     round_mm: Option<f64>,
@@ -384,42 +329,6 @@ fn read_curve(
 
 fn sha256_of(file: &Path) -> String {
     sha256(&std::fs::read(file).unwrap_or_default())
-}
-
-fn slice(job: &BandJob, exemplar: Exemplar) -> Result<Cut, JobError> {
-    let region = exemplar.region().clone();
-    slice_region(job, exemplar, &region)
-}
-
-/// Cuts `region`, which is the ink of `exemplar` or was made from it.
-pub(super) fn slice_region(job: &BandJob, exemplar: Exemplar, region: &Region) -> Result<Cut, JobError> {
-    let speck_mm2 = job.tolerances.chord_mm().powi(2);
-    let (region, specks) = region.without_specks(speck_mm2);
-    let region = &region;
-    if region.is_empty() {
-        return Err(JobError::Option {
-            option: "--chord",
-            found: format!("at {} mm all ink is no more than specks", job.tolerances.chord_mm()),
-            wanted: "use a smaller --chord, or a larger --width".to_owned(),
-        });
-    }
-    let (low, high) = region.bounds_mm().unwrap_or_default();
-    let rule = match job.options.slicing {
-        SlicingChoice::Reeb => SlicingRule::reeb_for_width(high.x - low.x),
-        SlicingChoice::Persistence(persistence_mm) => SlicingRule::Reeb { persistence_mm },
-        SlicingChoice::Uniform(lines) => SlicingRule::Uniform { lines },
-    };
-    let reeb = ReebGraph::new(region);
-    let slicing = Slicing::keeping(region, &reeb, rule, &job.options.kept, &job.tolerances)?;
-    let (weights, mirror) = (job.options.weights, job.options.mirror);
-    let catalogue = catalogue(region, &slicing, &weights, mirror);
-    let (region, height_mm) = (region.clone(), high.y - low.y);
-    Ok(Cut { region, slicing, catalogue, weights, mirror, height_mm, sides: Sides::Free, exemplar, specks })
-}
-
-fn catalogue(region: &Region, slicing: &Slicing, weights: &CostWeights, mirror: bool) -> Catalogue {
-    let new = if mirror { Catalogue::with_mirrored } else { Catalogue::new };
-    new(region, &slicing.cuts, weights)
 }
 
 fn make_part(
@@ -461,194 +370,4 @@ fn make_part(
         holes: planned.holes as usize,
         fault: last.expect("a try either returns or leaves a fault"),
     })
-}
-
-/// Cuts named in a note; a report lists all.
-const DROPPED_SHOWN: usize = 5;
-
-/// What to say of cuts through ink that is too thin.
-fn dropped_note(slicing: &Slicing) -> Option<String> {
-    let dropped = &slicing.dropped;
-    let shown = dropped.iter().take(DROPPED_SHOWN).map(|d| format!("{:.2} ({:.3})", d.x_mm, d.portal_mm));
-    let shown = shown.collect::<Vec<_>>().join(", ");
-    let more = if dropped.len() > DROPPED_SHOWN { ", ..." } else { "" };
-    (!dropped.is_empty()).then(|| {
-        format!(
-            "{} cut(s) were left out, as they pass through ink thinner than --min-feature: at x (portal) {shown}{more} mm",
-            dropped.len()
-        )
-    })
-}
-
-#[expect(
-    clippy::too_many_arguments,
-    reason = "a report draws on every stage, and this is the only place that sees all"
-)]
-fn describe(
-    job: &BandJob,
-    cut: &Cut,
-    plan: &Plan,
-    planned: Topology,
-    map: &BandMap,
-    outline: &Outline,
-    part: &Part,
-    curve: Option<InputReport>,
-    times: Vec<StageTime>,
-) -> BandReport {
-    let options = &job.options;
-    let worst = |angle: fn(&crate::fit::Seam) -> f64| outline.seams.iter().map(angle).fold(0.0, f64::max);
-    let length_mm = map.curve().length_mm();
-    let mut notes = cut.exemplar.notes().to_vec();
-    if let [first, ..] = cut.specks[..] {
-        notes.push(format!(
-            "{} speck(s) of less than {:.1e} mm2 were left out, the first at ({:.3}, {:.3}) mm; a smaller --chord keeps them",
-            cut.specks.len(),
-            job.tolerances.chord_mm().powi(2),
-            first.x,
-            first.y
-        ));
-    }
-    if outline.method != options.stitch && cut.sides != Sides::Held {
-        notes.push(
-            "the whole band was stitched by --stitch warp, as rotation-invariant deformation made contours meet between its pieces"
-                .to_owned(),
-        );
-    }
-    if !outline.fallbacks.is_empty() {
-        notes.push(format!(
-            "{} of {} pieces were warped, as rotation-invariant deformation would have broken them",
-            outline.fallbacks.len(),
-            plan.sequence.len()
-        ));
-    }
-    if let Some(note) = dropped_note(&cut.slicing) {
-        notes.push(note);
-    }
-    if let (SlicingChoice::Uniform(lines), 1..) = (options.slicing, cut.slicing.missed) {
-        notes.push(format!(
-            "{} of the {lines} cuts were left out, as contours run along them or nearly touch there",
-            cut.slicing.missed
-        ));
-    }
-    if plan.epsilon > 0.05 {
-        notes.push(format!(
-            "no sequence came within 5 % of the length; within {:.0} % one did, and it is stretched by {:.1} %",
-            plan.epsilon * 100.0,
-            (outline.stretch - 1.0) * 100.0
-        ));
-    }
-    if plan.epsilon <= 0.05 && (outline.stretch - 1.0).abs() > 0.05 {
-        notes.push(format!(
-            "the pieces are so narrow against the length that it was met only within {:.1} %, by stretching",
-            (outline.stretch - 1.0).abs() * 100.0
-        ));
-    }
-    if outline.squash < 0.99 {
-        notes.push(format!(
-            "the band climbs and was pressed to {:.0} % of its height to fit",
-            outline.squash * 100.0
-        ));
-    }
-    for squeeze in map.squeezes() {
-        notes.push(format!(
-            "the curve bends so hard at ({:.1}, {:.1}) mm that the inner side is squeezed from {:.1} to {:.1} mm",
-            squeeze.position_mm[0], squeeze.position_mm[1], squeeze.reach_mm, squeeze.squeezed_to_mm
-        ));
-    }
-    BandReport {
-        schema_version: 1,
-        generator: concat!("Openwork ", env!("CARGO_PKG_VERSION")),
-        exemplar: InputReport {
-            file: options.exemplar.display().to_string(),
-            sha256: cut.exemplar.sha256().to_owned(),
-        },
-        along: options.along.to_string(),
-        curve,
-        seed: match options.choice {
-            Choice::Drawn { seed, .. } => Some(seed),
-            _ => options.seed,
-        },
-        drawn_exactly: None,
-        log10_sequences: None,
-        longest_repeat: longest_repeat(&plan.sequence),
-        evenness: evenness(&plan.sequence, cut.catalogue.pieces().len()),
-        wanted_components: options.goal.components.map(|w| [w.least(), w.most()]),
-        wanted_holes: options.goal.holes.map(|w| [w.least(), w.most()]),
-        wanted_closed_pattern: options.goal.closed_pattern,
-        components: planned.components as usize,
-        holes: planned.holes as usize,
-        closed_pattern: planned.closed_pattern,
-        length_mm,
-        width_mm: cut.height_mm,
-        thickness_mm: options.thickness_mm,
-        chord_mm: job.tolerances.chord_mm(),
-        pieces_in_exemplar: cut.catalogue.originals(),
-        pieces_in_result: plan.sequence.len(),
-        mirror: cut.mirror,
-        mirrored_pieces_in_result: plan
-            .sequence
-            .iter()
-            .filter(|&&p| cut.catalogue.origin(p).is_mirrored)
-            .count(),
-        kept_mm: options.kept.iter().map(|k| [k.from_mm, k.to_mm]).collect(),
-        dropped_cuts: cut
-            .slicing
-            .dropped
-            .iter()
-            .map(|d| DroppedCutReport { x_mm: d.x_mm, portal_mm: d.portal_mm })
-            .collect(),
-        sequence: plan.sequence.clone(),
-        cost: plan.cost,
-        optimal: plan.gap.map(|gap| gap == 0.0),
-        cost_gap: plan.gap,
-        autocorrelation: job.variety.map(|_| autocorrelation(&plan.sequence)),
-        successors: cut.weights.successors,
-        epsilon: plan.epsilon,
-        length_error_mm: length_mm / outline.stretch - length_mm,
-        squash: outline.squash,
-        squeezes: map.squeezes().to_vec(),
-        bridges: None,
-        seams: SeamReport {
-            count: outline.seams.len(),
-            jumps: outline.seams.iter().filter(|s| !s.is_natural).count(),
-            worst_angle_before_deg: worst(|s| s.before_deg),
-            worst_angle_after_deg: worst(|s| s.after_deg),
-        },
-        stitching: stitching(outline),
-        search_labels: plan.labels,
-        search_states: plan.states,
-        min_feature: None,
-        min_gap: None,
-        area_mm2: part.region.area_mm2(),
-        page_mm: part.page_mm.to_array(),
-        vertices: part.region.vertices(),
-        svg_segments: None,
-        triangles: None,
-        shells: None,
-        genus: None,
-        volume_mm3: None,
-        files: Vec::new(),
-        certificate: Certificate::new(
-            &cut.catalogue,
-            &plan.sequence,
-            if map.curve().is_closed() { Shape::Ring } else { Shape::Open },
-            options.goal,
-            planned,
-        ),
-        notes,
-        times,
-    }
-}
-
-fn stitching(outline: &Outline) -> StitchReport {
-    let fallbacks = outline.fallbacks.iter().map(|f| FallbackReport {
-        place: f.place,
-        piece: f.piece,
-        fault: f.fault.to_string(),
-    });
-    StitchReport {
-        method: outline.method.to_string(),
-        fallbacks: fallbacks.collect(),
-        fallback_seams: (0..outline.seams.len()).filter(|&i| outline.seams[i].fell_back).collect(),
-    }
 }

@@ -192,7 +192,6 @@ impl Certificate {
                 closed_pattern: planned.closed_pattern,
             }
         });
-        let range = |wanted: Option<Wanted>| wanted.map(|w| [w.least(), w.most()]);
         Self {
             version: VERSION,
             shape: match shape {
@@ -200,8 +199,8 @@ impl Certificate {
                 Shape::Ring => "ring",
             },
             wanted: WantedCounts {
-                components: range(goal.components),
-                holes: range(goal.holes),
+                components: goal.components.map(Wanted::ends),
+                holes: goal.holes.map(Wanted::ends),
                 closed_pattern: goal.closed_pattern,
             },
             pieces: used.iter().map(|&piece| PieceDescriptor::new(piece, &descriptors[piece])).collect(),

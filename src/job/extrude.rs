@@ -86,7 +86,7 @@ pub fn extrude(
         ..Expected::default()
     };
     let solid = clock.time(Stage::Verify, || check_stl(output.target(), &pending, &expected))?;
-    persist(vec![pending])?;
+    persist(vec![pending], None)?;
     Ok(ExtrudeReport {
         schema_version: 1,
         input: InputReport { file: file.display().to_string(), sha256: drawing.sha256().to_owned() },

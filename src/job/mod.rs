@@ -27,6 +27,8 @@ mod bridging;
 mod builder;
 mod certificate;
 mod choice;
+mod cut;
+mod describe;
 mod error;
 mod extrude;
 mod json;
@@ -44,7 +46,7 @@ mod report;
 mod stage;
 
 pub use crate::reeb::KeptRange;
-pub use band::{Band, READ_SHARE};
+pub use band::Band;
 pub use bridging::BridgesReport;
 pub use builder::{BandBuilder, BandJob, SlicingChoice};
 pub use certificate::{
@@ -52,6 +54,7 @@ pub use certificate::{
     WantedCounts,
 };
 pub use choice::{Choice, Chosen, DEFAULT_TEMPERATURE, choose};
+pub use cut::READ_SHARE;
 pub use error::{JobError, OutlineFault};
 pub use extrude::{ExtrudeBridges, ExtrudeReport, extrude};
 pub use output::{Format, Output, Target};

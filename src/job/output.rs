@@ -190,8 +190,11 @@ impl Pending {
 }
 
 /// Writes what goes to standard output, then gives all files their names. A reader of standard output that
-/// has closed the pipe has had enough, which is no failure.
-pub(super) fn persist(pending: Vec<Pending>) -> Result<(), JobError> {
+/// has closed the pipe has had enough, which is no failure. A report, if there is one, goes with them to its target.
+pub(super) fn persist(mut pending: Vec<Pending>, report: Option<(&Target, String)>) -> Result<(), JobError> {
+    if let Some((target, json)) = report {
+        pending.push(Pending::new(target, json.into_bytes())?);
+    }
     let mut files = Vec::new();
     let mut streams = Vec::new();
     for item in pending {

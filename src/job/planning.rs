@@ -1,9 +1,9 @@
 //! From a sliced exemplar to the sequences of a job: strictly, or with what bridges are going to mend.
 
-use super::band::Cut;
 use super::bridging;
 use super::builder::BandJob;
 use super::choice::{Choice, Chosen, choose};
+use super::cut::Cut;
 use super::error::JobError;
 use super::plan::{Plan, PlanError, PlanOptions};
 use super::refusal;

@@ -10,14 +10,14 @@
 
 use super::band::{Band, Drawn};
 use super::error::JobError;
-use super::output::{Output, Pending, Target, persist};
+use super::output::{Output, Target, persist};
 use super::plan::Plan;
 use super::rect_builder::RectJob;
 use super::rect_report::{DirectionReport, RectReport};
 use super::rect_search::{Found, Made, search};
 use super::stage::{Clock, Stage};
 use crate::planar::Region;
-use crate::topology::Topology;
+use crate::topology::{Topology, Wanted};
 use crate::verify::Tiling;
 
 /// A rectangle that has the planned topology, ready to be written.
@@ -71,13 +71,10 @@ impl Rect {
         progress: &mut dyn FnMut(Stage),
     ) -> Result<RectReport, JobError> {
         self.band.job.check_outputs(outputs, report_file)?;
-        let (found, mut pending) = self.band.deliver(outputs, Some(self.drawn.clone()), progress)?;
+        let (found, pending) = self.band.deliver(outputs, Some(self.drawn.clone()), progress)?;
         let mut report = self.report.clone();
         report.measured(found);
-        if let Some(target) = report_file {
-            pending.push(Pending::new(target, report.to_json().into_bytes())?);
-        }
-        persist(pending)?;
+        persist(pending, report_file.map(|target| (target, report.to_json())))?;
         Ok(report)
     }
 }
@@ -95,8 +92,8 @@ fn describe(job: &RectJob, found: &Found) -> RectReport {
         exemplar: made.exemplar.clone(),
         size_mm: [job.size.width_mm(), job.size.height_mm()],
         seed: options.seed,
-        wanted_components: options.goal.components.map(|w| [w.least(), w.most()]),
-        wanted_holes: options.goal.holes.map(|w| [w.least(), w.most()]),
+        wanted_components: options.goal.components.map(Wanted::ends),
+        wanted_holes: options.goal.holes.map(Wanted::ends),
         components: made.components,
         holes: made.holes,
         mirror: options.mirror,

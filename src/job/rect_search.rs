@@ -13,8 +13,9 @@
 
 use glam::DVec2;
 
-use super::band::{Band, Cut, Drawn, read_exemplar, slice_region};
+use super::band::{Band, Drawn};
 use super::builder::BandJob;
+use super::cut::{Cut, read_exemplar, slice_region};
 use super::error::JobError;
 use super::part::Part;
 use super::plan::Plan;

@@ -10,7 +10,7 @@
 
 use glam::DVec2;
 
-use super::band::Cut;
+use super::cut::Cut;
 use super::error::JobError;
 use crate::fit::Sides;
 use crate::pieces::CostWeights;

@@ -95,8 +95,7 @@ impl<'p> Census<'p> {
             scope.starts.iter().filter_map(|&(p, cost)| automaton.start(p).map(|s| (p, cost, s))).collect();
         let mut explored = triples(problem, automaton, scope, true, NODE_LIMIT)?;
         let graph = std::mem::take(&mut explored.graph);
-        let work = graph.all_edges().len().saturating_mul(*problem.window.end() as usize);
-        *patience = patience.checked_sub(work)?;
+        *patience = patience.checked_sub(graph.work(*problem.window.end()))?;
         let weigh = |cost| Big::of_cost(cost, *temperature);
         let table = Table::new(graph, problem.window.clone(), TABLE_BUDGET, weigh);
         let starts = starts.into_iter().filter_map(|(piece, cost, state)| {

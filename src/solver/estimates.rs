@@ -74,8 +74,7 @@ impl Estimates {
             (self.exact, self.is_by_drift) = (Some(both), true);
         } else if self.drifts.is_none() && drifts.saturating_mul(problem.pieces()) <= NODE_LIMIT {
             let graph = of_drifts(problem, scope);
-            let work = graph.all_edges().len().saturating_mul(*problem.window.end() as usize);
-            self.drifts = (work <= DRIFT_WORK_LIMIT)
+            self.drifts = (graph.work(*problem.window.end()) <= DRIFT_WORK_LIMIT)
                 .then(|| Table::new(graph, problem.window.clone(), TABLE_BUDGET, |cost| cost));
         }
     }
@@ -171,8 +170,8 @@ pub(super) fn triples(
 /// The pass over a graph, unless it would take too long.
 fn affordable(problem: &Problem<'_>, graph: Graph) -> Option<Table<Cost>> {
     let longest = *problem.window.end();
-    let work = graph.all_edges().len().saturating_mul(longest as usize);
-    (work <= WORK_LIMIT && Table::<Cost>::least_bytes(graph.len(), graph.widest(), longest) <= TABLE_BUDGET)
+    (graph.work(longest) <= WORK_LIMIT
+        && Table::<Cost>::least_bytes(graph.len(), graph.widest(), longest) <= TABLE_BUDGET)
         .then(|| Table::new(graph, problem.window.clone(), TABLE_BUDGET, |cost| cost))
 }
 

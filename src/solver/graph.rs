@@ -78,6 +78,11 @@ impl Graph {
         self.stops[node]
     }
 
+    /// The additions that a pass over lengths up to `longest` takes.
+    pub(super) fn work(&self, longest: u32) -> usize {
+        self.edges.len().saturating_mul(longest as usize)
+    }
+
     /// The greatest width of an edge; 1 without edges.
     pub(super) fn widest(&self) -> usize {
         self.edges.iter().map(|e| e.width as usize).max().unwrap_or(1)

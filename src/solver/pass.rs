@@ -133,7 +133,6 @@ impl Walk<'_> {
         let mut passage = Passage { found: None, drifted_at: NEVER, beyond, labels: 0, is_cut_short: false };
         let mut best: Option<(Cost, Cost, u32)> = None;
         let mut repetition = problem.variety.map(Repetition::new);
-        self.load(0);
         for &(piece, cost) in &self.scope.starts {
             // Starts are met at their own lengths, which may be in another block.
             let length = problem.widths[piece];

@@ -44,6 +44,11 @@ impl Wanted {
         self.most
     }
 
+    /// The least and the greatest number wanted.
+    pub fn ends(self) -> [u32; 2] {
+        [self.least, self.most]
+    }
+
     /// Whether `n` is wanted.
     pub fn contains(self, n: u32) -> bool {
         (self.least..=self.most).contains(&n)

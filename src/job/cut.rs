@@ -1,0 +1,100 @@
+//! The exemplar of a job, read and cut into pieces.
+
+use glam::DVec2;
+
+use super::builder::{BandJob, SlicingChoice};
+use super::error::JobError;
+use crate::exemplar::{Exemplar, Limits, ReadOptions};
+use crate::fit::Sides;
+use crate::pieces::{Catalogue, CostWeights};
+use crate::planar::Region;
+use crate::reeb::{ReebGraph, Slicing, SlicingRule};
+
+/// The part of the chord error that is for flattening the exemplar.
+pub const READ_SHARE: f64 = 0.25;
+
+/// An exemplar cut into pieces.
+pub(super) struct Cut {
+    pub(super) exemplar: Exemplar,
+    pub(super) region: Region,
+    pub(super) slicing: Slicing,
+    pub(super) catalogue: Catalogue,
+    pub(super) weights: CostWeights,
+    pub(super) mirror: bool,
+    pub(super) height_mm: f64,
+    /// What becomes of the sides of the band.
+    pub(super) sides: Sides,
+    /// Parts and holes that are too small to be told from nothing at the chord error.
+    pub(super) specks: Vec<DVec2>,
+}
+
+impl Cut {
+    /// What is cut.
+    pub(super) fn region(&self) -> &Region {
+        &self.region
+    }
+
+    /// Makes the catalogue again, after cuts were left out or weights were changed.
+    pub(super) fn weigh(&mut self, own_ends_only: bool) {
+        let catalogue = catalogue(&self.region, &self.slicing, &self.weights, self.mirror);
+        self.catalogue = if own_ends_only { catalogue.with_own_ends_only() } else { catalogue };
+    }
+
+    /// Weighs every join instead of the cheapest few; `false` if that changes nothing.
+    pub(super) fn admit_all_successors(&mut self) -> bool {
+        let pieces = self.catalogue.originals();
+        if self.weights.successors >= pieces {
+            return false;
+        }
+        self.weights.successors = pieces;
+        self.weigh(self.catalogue.has_own_ends_only());
+        true
+    }
+}
+
+/// The exemplar at the size and the chord error of the job.
+pub(super) fn read_exemplar(job: &BandJob) -> Result<Exemplar, JobError> {
+    let options = ReadOptions {
+        chord_mm: job.tolerances.chord_mm() * READ_SHARE,
+        target_height_mm: job.options.width_mm,
+        limits: Limits::default(),
+    };
+    Ok(Exemplar::read(&job.options.exemplar, &options)?)
+}
+
+/// Cuts the exemplar.
+pub(super) fn slice(job: &BandJob, exemplar: Exemplar) -> Result<Cut, JobError> {
+    let region = exemplar.region().clone();
+    slice_region(job, exemplar, &region)
+}
+
+/// Cuts `region`, which is the ink of `exemplar` or was made from it.
+pub(super) fn slice_region(job: &BandJob, exemplar: Exemplar, region: &Region) -> Result<Cut, JobError> {
+    let speck_mm2 = job.tolerances.chord_mm().powi(2);
+    let (region, specks) = region.without_specks(speck_mm2);
+    let region = &region;
+    if region.is_empty() {
+        return Err(JobError::Option {
+            option: "--chord",
+            found: format!("at {} mm all ink is no more than specks", job.tolerances.chord_mm()),
+            wanted: "use a smaller --chord, or a larger --width".to_owned(),
+        });
+    }
+    let (low, high) = region.bounds_mm().unwrap_or_default();
+    let rule = match job.options.slicing {
+        SlicingChoice::Reeb => SlicingRule::reeb_for_width(high.x - low.x),
+        SlicingChoice::Persistence(persistence_mm) => SlicingRule::Reeb { persistence_mm },
+        SlicingChoice::Uniform(lines) => SlicingRule::Uniform { lines },
+    };
+    let reeb = ReebGraph::new(region);
+    let slicing = Slicing::keeping(region, &reeb, rule, &job.options.kept, &job.tolerances)?;
+    let (weights, mirror) = (job.options.weights, job.options.mirror);
+    let catalogue = catalogue(region, &slicing, &weights, mirror);
+    let (region, height_mm) = (region.clone(), high.y - low.y);
+    Ok(Cut { region, slicing, catalogue, weights, mirror, height_mm, sides: Sides::Free, exemplar, specks })
+}
+
+fn catalogue(region: &Region, slicing: &Slicing, weights: &CostWeights, mirror: bool) -> Catalogue {
+    let new = if mirror { Catalogue::with_mirrored } else { Catalogue::new };
+    new(region, &slicing.cuts, weights)
+}
