@@ -11,6 +11,8 @@ use glam::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
 use serde::Serialize;
 
+use crate::planar::Sets;
+
 /// Faults that a report prints for people; the list itself is complete.
 pub(super) const FAULTS_SHOWN: usize = 10;
 
@@ -317,30 +319,6 @@ impl Tally {
         let euler = self.vertices - self.edges + self.facets as i64;
         let genus = self.closed.then_some(1 - euler / 2);
         Shell { triangles: self.facets, genus, volume_mm3: self.volume }
-    }
-}
-
-/// Disjoint sets; each is known by its least member, so that nothing depends on the order of joins.
-struct Sets {
-    parent: Vec<usize>,
-}
-
-impl Sets {
-    fn new(n: usize) -> Self {
-        Self { parent: (0..n).collect() }
-    }
-
-    fn find(&mut self, mut i: usize) -> usize {
-        while self.parent[i] != i {
-            self.parent[i] = self.parent[self.parent[i]];
-            i = self.parent[i];
-        }
-        i
-    }
-
-    fn join(&mut self, i: usize, j: usize) {
-        let (i, j) = (self.find(i), self.find(j));
-        self.parent[i.max(j)] = i.min(j);
     }
 }
 

@@ -5,7 +5,7 @@ use super::links::{Link, links};
 use super::place::{Place, Prober};
 use super::trial::{Purpose, REQUIRED, Site, Verdict};
 use super::{Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts};
-use crate::planar::{EdgeIndex, Grid, GridPoint, Region};
+use crate::planar::{EdgeIndex, Grid, GridPoint, Region, Sets};
 
 /// A machine's narrowest width is exceeded by this: what is just as wide is lost in rounding.
 const SPARE: f64 = 1.05;
@@ -117,7 +117,7 @@ impl Layer<'_> {
     /// Joins the nearest nodes first (Kruskal's minimum spanning forest), but never the two of `apart`.
     fn join(&mut self, apart: Option<[usize; 2]>) {
         let (ground, side) = (self.prober.ground, self.prober.side);
-        let mut sets = Sets::new(ground.nodes(side), apart);
+        let mut sets = Joined::new(ground.nodes(side), apart);
         let (mut over, mut reach) = (-1.0, self.prober.width_mm);
         // Links without a place for a bridge: when longer ones are taken, they too may take a longer way.
         let mut again: Vec<(Link, usize)> = Vec::new();
@@ -189,7 +189,7 @@ impl Layer<'_> {
     }
 
     /// Lays a bridge at the best of these places; `false` when none will do.
-    fn lay_best(&mut self, places: &[Place], least_mm: f64, purpose: Purpose, sets: &mut Sets) -> bool {
+    fn lay_best(&mut self, places: &[Place], least_mm: f64, purpose: Purpose, sets: &mut Joined) -> bool {
         let mut passed: Vec<(f64, &Place, Verdict)> = Vec::new();
         let mut least = f64::INFINITY;
         for place in places {
@@ -255,22 +255,18 @@ impl Layer<'_> {
 }
 
 /// What is joined already, and what must not be.
-struct Sets {
-    parent: Vec<usize>,
+struct Joined {
+    sets: Sets,
     apart: Option<[usize; 2]>,
 }
 
-impl Sets {
+impl Joined {
     fn new(count: usize, apart: Option<[usize; 2]>) -> Self {
-        Self { parent: (0..count).collect(), apart }
+        Self { sets: Sets::new(count), apart }
     }
 
-    fn root(&mut self, mut node: usize) -> usize {
-        while self.parent[node] != node {
-            self.parent[node] = self.parent[self.parent[node]];
-            node = self.parent[node];
-        }
-        node
+    fn root(&mut self, node: usize) -> usize {
+        self.sets.find(node)
     }
 
     fn may_join(&mut self, a: usize, b: usize) -> bool {
@@ -289,7 +285,6 @@ impl Sets {
     }
 
     fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parent[a] = b;
+        self.sets.join(a, b);
     }
 }
