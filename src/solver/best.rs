@@ -8,11 +8,11 @@
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap};
 
-use super::estimates::{TABLE_BUDGET, triples};
+use super::estimates::triples;
 use super::family::families;
 use super::graph::{Explored, Scope};
 use super::problem::{Cost, Problem, Solution, Unsolved};
-use super::table::{NEVER, Table};
+use super::table::{NEVER, TABLE_BUDGET, Table};
 use crate::topology::{Automaton, Goal, Shape, StateId};
 
 /// Nodes at which it is given up.
@@ -117,7 +117,7 @@ impl Listing {
     ) -> Option<Self> {
         let mut explored = triples(problem, automaton, &scope, by_drift, NODE_LIMIT)?;
         let graph = std::mem::take(&mut explored.graph);
-        let table = Table::new(graph, problem.window.clone(), 4 * TABLE_BUDGET, |cost| cost);
+        let table = Table::new(graph.into(), problem.window.clone(), 4 * TABLE_BUDGET, |cost, _| cost);
         let mut list = Self { explored, table, runs: Vec::new(), open: BinaryHeap::new() };
         for &(piece, cost) in &scope.starts {
             let state = automaton.start(piece);

@@ -9,12 +9,12 @@
 //! Excluded: problems whose triples are too many, which have no census.
 
 use super::big::Big;
-use super::estimates::{TABLE_BUDGET, triples};
+use super::estimates::triples;
 use super::family::families;
 use super::graph::{Explored, Scope};
 use super::problem::Problem;
 use super::random::Random;
-use super::table::{Table, Weigh};
+use super::table::{TABLE_BUDGET, Table, Weigh};
 use crate::topology::{Automaton, Goal, StateId};
 
 /// Nodes at which a census is given up.
@@ -97,7 +97,7 @@ impl<'p> Census<'p> {
         let graph = std::mem::take(&mut explored.graph);
         *patience = patience.checked_sub(graph.work(*problem.window.end()))?;
         let weigh = |cost| Big::of_cost(cost, *temperature);
-        let table = Table::new(graph, problem.window.clone(), TABLE_BUDGET, weigh);
+        let table = Table::new(graph.into(), problem.window.clone(), TABLE_BUDGET, |cost, _| weigh(cost));
         let starts = starts.into_iter().filter_map(|(piece, cost, state)| {
             explored.node(piece, (state, 0)).map(|node| (node, weigh(cost)))
         });

@@ -13,6 +13,7 @@
 //! Past the memory limit a beam finds a run if it can. The last threshold at which nothing was found says how
 //! far from the optimum that may be.
 
+use super::estimates::Level;
 use super::family::{Family, families};
 use super::labels::LABEL_BYTES;
 use super::pass::{Beyond, Passage, Walk};
@@ -23,6 +24,12 @@ use crate::topology::Automaton;
 
 /// Labels after which the dear estimates are made. Most goals near the exemplar's own topology need fewer.
 const SHORT: usize = 20_000;
+/// Labels after which the dearest of all is made, the pass over all pairs of piece and state with the drift.
+const LONG: usize = 400_000;
+/// A threshold is too high when it lets in so many times the labels of the last one.
+const LEAP: usize = 24;
+/// It is lowered to so small a part of the step that led to it.
+const STEP_BACK: Cost = 6;
 /// Runs that a threshold lets in at least of those that the last one left out.
 const FEW: usize = 8;
 /// Labels for each run more that a threshold lets in. Each is going to be extended to a few of its own.
@@ -41,10 +48,10 @@ pub(super) fn cheapest(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -> 
         floor: threshold,
         best: None,
         by_drift: false,
-        has_learned: automaton.goal().is_free(),
-        has_learned_drift: false,
+        level: if automaton.goal().is_free() { Level::Topology } else { Level::Pieces },
         labels: 0,
-        labels_before_drift: 0,
+        labels_before: 0,
+        last: 0,
     };
     if problem.variety.is_some() {
         return search.varied(automaton);
@@ -62,12 +69,13 @@ struct Cheapest<'p> {
     /// The best so far: pieces, cost, cost with penalties.
     best: Option<(Vec<usize>, Cost, Cost)>,
     by_drift: bool,
-    /// Whether the estimates that know topology, and those that know the drift, were found to be worth while.
-    has_learned: bool,
-    has_learned_drift: bool,
+    /// Which estimates were found to be worth while.
+    level: Level,
     labels: usize,
-    /// Labels that were made before runs were told apart by drift.
-    labels_before_drift: usize,
+    /// Labels that were made before the estimates were those of the level, and runs told apart by drift or not.
+    labels_before: usize,
+    /// Labels of the last walks with one threshold.
+    last: usize,
 }
 
 /// What the walks over all families with one threshold came to.
@@ -81,21 +89,29 @@ impl Cheapest<'_> {
     fn solve(mut self, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
         while self.threshold != NEVER {
             let most = self.label_limit(automaton);
-            let limit = if self.is_learned() { most } else { most.min(self.labels_before_drift + SHORT) };
-            let round = self.round(automaton, limit);
+            let patience = self.patience().map_or(most, |labels| most.min(self.labels_before + labels));
+            // Of a step that is as small as it can be, nothing can be taken back.
+            let is_leap = self.threshold > self.floor + STEP_BACK;
+            let leap = if is_leap { self.labels + (LEAP * self.last).max(SHORT) } else { usize::MAX };
+            let before = self.labels;
+            let round = self.round(automaton, patience.min(leap));
             if round.is_cut_short {
-                if self.is_learned() {
-                    return self.beam(automaton);
+                if self.labels > patience {
+                    if self.patience().is_none() {
+                        return self.beam(automaton);
+                    }
+                    self.learn(automaton);
+                } else {
+                    self.threshold = self.floor + (self.threshold - self.floor) / STEP_BACK;
                 }
-                (self.has_learned, self.has_learned_drift) = (true, self.by_drift);
-                self.learn(automaton);
                 continue;
             }
+            self.last = self.labels - before;
             let best = self.best.as_ref().map_or(NEVER, |&(_, _, total)| total);
             if !self.by_drift && round.drifted_at < best && round.drifted_at <= self.threshold {
                 // Up to there, nothing was left out.
                 self.by_drift = true;
-                self.labels_before_drift = self.labels;
+                self.labels_before = self.labels;
                 self.floor = self.floor.max(round.drifted_at);
                 self.threshold = round.drifted_at;
                 self.raise();
@@ -107,22 +123,39 @@ impl Cheapest<'_> {
                 break;
             }
             self.floor = self.floor.max(round.beyond.least());
-            self.threshold = round.beyond.next((self.labels / LABELS_PER_RUN).max(FEW));
-            if self.labels - self.labels_before_drift > SHORT {
-                (self.has_learned, self.has_learned_drift) = (true, self.by_drift);
-            }
-            if self.has_learned {
+            self.threshold = round.beyond.next((self.last / LABELS_PER_RUN).max(FEW));
+            if self.patience().is_some_and(|labels| self.labels > self.labels_before + labels) {
                 self.learn(automaton);
-                let problem = self.problem;
-                for family in &mut self.families {
-                    if family.estimates.learn_more(problem, automaton, &family.scope) {
-                        family.look_again(problem, automaton);
-                    }
+            }
+            let problem = self.problem;
+            for family in &mut self.families {
+                if family.estimates.learn_more(problem, automaton, &family.scope) {
+                    family.look_again(problem, automaton);
                 }
             }
-            self.raise();
+            self.catch_up(automaton);
         }
         self.finish(automaton)
+    }
+
+    /// Labels after which the estimates of the next level are made; `None` when there is none.
+    fn patience(&self) -> Option<usize> {
+        match (self.level, self.by_drift) {
+            (Level::Pieces, _) | (Level::Topology, true) => Some(SHORT),
+            (Level::Prices, _) => Some(LONG),
+            (Level::Topology, false) | (Level::Drift, _) => None,
+        }
+    }
+
+    /// Goes on to the next level of estimates.
+    fn learn(&mut self, automaton: &mut Automaton<'_>) {
+        self.level = match (self.level, self.by_drift) {
+            (Level::Pieces, false) => Level::Topology,
+            (Level::Pieces | Level::Topology, _) => Level::Prices,
+            (Level::Prices | Level::Drift, _) => Level::Drift,
+        };
+        self.labels_before = self.labels;
+        self.catch_up(automaton);
     }
 
     /// Walks over all members with the threshold.
@@ -182,33 +215,24 @@ impl Cheapest<'_> {
         round
     }
 
-    /// Finds out what cannot be, and makes the estimates that are dear to make, for the families that the threshold
-    /// has reached; as they learn, it rises, and reaches others.
-    fn learn(&mut self, automaton: &mut Automaton<'_>) {
-        let (problem, goal) = (self.problem, automaton.goal());
+    /// Finds out what cannot be, and makes the estimates of the level, for the families that the threshold has
+    /// reached; as they learn, it rises, and reaches others.
+    fn catch_up(&mut self, automaton: &mut Automaton<'_>) {
+        let (problem, goal, level) = (self.problem, automaton.goal(), self.level);
         self.raise();
         loop {
-            let by_drift = self.has_learned_drift;
             let is_due = |f: &&mut Family| {
-                (!f.has_learned || (by_drift && !f.has_learned_drift))
-                    && f.estimate() <= self.threshold
-                    && f.estimate() != NEVER
+                let estimate = f.estimate();
+                f.level < level && estimate <= self.threshold && estimate != NEVER
             };
             let Some(family) = self.families.iter_mut().filter(is_due).min_by_key(|f| f.estimate()) else {
                 return;
             };
-            let is_new = !std::mem::replace(&mut family.has_learned, true);
+            let is_new = family.level == Level::Pieces;
             if is_new && is_never(problem, automaton, &family.scope) {
                 family.members.clear();
             } else {
-                if is_new {
-                    family.learn_topology(problem, automaton);
-                }
-                if by_drift {
-                    family.has_learned_drift = true;
-                    family.estimates.learn_drift(problem, automaton, &family.scope);
-                    family.look_again(problem, automaton);
-                }
+                family.learn(problem, automaton, level);
                 if is_new
                     && !goal.is_free()
                     && !family.estimates.is_exact()
@@ -219,11 +243,6 @@ impl Cheapest<'_> {
             }
             self.raise();
         }
-    }
-
-    /// Whether all estimates that are of use were found to be worth while.
-    fn is_learned(&self) -> bool {
-        self.has_learned && (self.has_learned_drift || !self.by_drift)
     }
 
     /// Lifts the threshold to the least estimate.
@@ -266,7 +285,8 @@ impl Cheapest<'_> {
         const PATIENCE: usize = 400_000_000;
         /// Members that are looked at, the most promising first.
         const MEMBERS: usize = 6;
-        self.learn(automaton);
+        self.level = self.level.max(Level::Topology);
+        self.catch_up(automaton);
         let joins: usize =
             self.problem.steps.iter().map(Vec::len).sum::<usize>() / self.problem.pieces().max(1);
         let layers = *self.problem.window.end() as usize;

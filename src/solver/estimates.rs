@@ -9,38 +9,49 @@
 //!   all the others together is not, and an answer must bring that class into contact with the rest before it
 //!   ends. The estimate of a run is the greatest over its classes. With holes wanted too, the Euler
 //!   characteristic is known besides: with one component it says how many holes there are going to be.
-//! - *drifts*: where runs leave the band, the pieces with the drift.
+//!
+//! Where runs leave the band each of these knows the drift by a price ([`super::priced`]), and where that is not
+//! enough, the pairs of piece and state are taken with the drift.
+
+use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
 
-use super::graph::{Explored, Graph, Joins, Scope, drift_node, of_drifts};
+use super::graph::{Explored, Joins, Scope, of_pieces};
+use super::priced::{Passes, estimate};
 use super::problem::{Cost, Problem};
-use super::table::{NEVER, Table};
+use super::table::Table;
 use crate::topology::{Automaton, Descriptor, Goal, Shape, StateId};
 
 /// Nodes of a graph at which it is given up.
 const NODE_LIMIT: usize = 60_000;
-/// Additions in a pass at which it is not begun: about a second.
-const WORK_LIMIT: usize = 500_000_000;
-/// Additions in the pass that knows the drift at which it is not begun. Without it, a long run that leaves the band
-/// is searched blindly, which takes more.
-const DRIFT_WORK_LIMIT: usize = 4 * WORK_LIMIT;
+/// Additions in the pass that knows the drift, of which there are some 700 million in a second.
+const DRIFT_WORK_LIMIT: usize = 4_000_000_000;
 /// The portals of classes that are told from the rest: the first that is affordable.
 const CLASS_SIZES: [usize; 4] = [64, 4, 2, 1];
-/// Bytes of a table up to which all its rows are kept.
-pub(super) const TABLE_BUDGET: usize = 256 << 20;
 
-/// Pairs of piece and state, with the drift where it is known, and what completing a run from them costs.
-type Exact = (Explored<(StateId, i32)>, Table<Cost>);
+/// What estimates know, from the cheapest to the dearest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Level {
+    /// Pieces and joins.
+    Pieces,
+    /// And how portals are connected.
+    Topology,
+    /// And what rising costs in the end.
+    Prices,
+    /// And the drift itself.
+    Drift,
+}
 
 /// The estimates that are dear to make, as far as they were made.
 #[derive(Default)]
 pub(super) struct Estimates {
-    /// Nodes by state and, once runs are told apart by it, drift.
-    exact: Option<Exact>,
-    is_by_drift: bool,
+    exact: Option<(Explored<(StateId, i32)>, Passes)>,
     classes: Option<Classes>,
-    drifts: Option<Table<Cost>>,
+    /// The same with the drift.
+    drifting: Option<(Explored<(StateId, i32)>, Table<Cost>)>,
+    /// Of the pieces alone, made when the drift is known and neither of the others is.
+    pieces: Option<Passes>,
 }
 
 impl Estimates {
@@ -54,28 +65,53 @@ impl Estimates {
         if automaton.goal().is_free() {
             return;
         }
-        self.exact = exact(problem, automaton, scope, false);
+        self.exact = triples(problem, automaton, scope, false, NODE_LIMIT).and_then(|mut explored| {
+            let passes = Passes::new(problem, std::mem::take(&mut explored.graph))?;
+            Some((explored, passes))
+        });
         if self.exact.is_none() {
             self.classes = Classes::new(problem, automaton.goal(), scope);
         }
     }
 
-    /// Makes the estimates that know the drift, as far as they are affordable.
+    /// Makes what is known know the drift, by prices.
+    pub(super) fn learn_prices(
+        &mut self,
+        problem: &Problem<'_>,
+        automaton: &mut Automaton<'_>,
+        scope: &Scope,
+    ) {
+        let begin = |piece: usize, node: usize, cost: Cost| (node, problem.widths[piece], cost);
+        if let Some((explored, passes)) = &mut self.exact {
+            let starts = scope.starts.iter().filter_map(|&(piece, cost)| {
+                let node = explored.node(piece, (automaton.start(piece)?, 0))?;
+                Some(begin(piece, node, cost))
+            });
+            passes.learn_prices(problem, &starts.collect::<Vec<_>>());
+        } else if let Some(classes) = &mut self.classes {
+            classes.learn_prices(problem, scope);
+        } else {
+            let starts = scope.starts.iter().map(|&(piece, cost)| begin(piece, piece, cost));
+            self.pieces = Passes::new(problem, of_pieces(problem, scope));
+            if let Some(passes) = &mut self.pieces {
+                passes.learn_prices(problem, &starts.collect::<Vec<_>>());
+            }
+        }
+    }
+
+    /// Makes the pass over all pairs of piece and state with the drift, if it is affordable.
     pub(super) fn learn_drift(
         &mut self,
         problem: &Problem<'_>,
         automaton: &mut Automaton<'_>,
         scope: &Scope,
     ) {
-        let drifts = 2 * problem.drift_limit as usize + 1;
-        if self.exact.is_some()
-            && let Some(both) = exact(problem, automaton, scope, true)
-        {
-            (self.exact, self.is_by_drift) = (Some(both), true);
-        } else if self.drifts.is_none() && drifts.saturating_mul(problem.pieces()) <= NODE_LIMIT {
-            let graph = of_drifts(problem, scope);
-            self.drifts = (graph.work(*problem.window.end()) <= DRIFT_WORK_LIMIT)
-                .then(|| Table::new(graph, problem.window.clone(), TABLE_BUDGET, |cost| cost));
+        if self.exact.is_some() || automaton.goal().is_free() {
+            self.drifting = triples(problem, automaton, scope, true, NODE_LIMIT).and_then(|mut explored| {
+                let graph = Arc::new(std::mem::take(&mut explored.graph));
+                let table = estimate(problem, &graph, DRIFT_WORK_LIMIT, |cost, _| cost)?;
+                Some((explored, table))
+            });
         }
     }
 
@@ -86,16 +122,20 @@ impl Estimates {
 
     /// Makes the rows of `length` and of what a step leads to available.
     pub(super) fn load(&mut self, length: u32) {
-        let Self { exact, classes, drifts, .. } = self;
-        let tables = [
-            exact.as_mut().map(|(_, table)| table),
-            classes.as_mut().map(|classes| &mut classes.table),
-            drifts.as_mut(),
+        let Self { exact, classes, pieces, drifting } = self;
+        if let Some((_, table)) = drifting {
+            table.load(length);
+        }
+        let passes = [
+            exact.as_mut().map(|(_, passes)| passes),
+            classes.as_mut().map(|classes| &mut classes.passes),
+            pieces.as_mut(),
         ];
-        tables.into_iter().flatten().for_each(|table| table.load(length));
+        passes.into_iter().flatten().for_each(|passes| passes.load(length));
     }
 
-    /// The estimate for a run of `length` that ends with `piece` in `state`, at a length that is loaded.
+    /// The estimate for a run of `length` that ends with `piece` in `state`, at a length that is loaded, with its
+    /// drift where runs are told apart by it.
     pub(super) fn rest(
         &mut self,
         problem: &Problem<'_>,
@@ -104,16 +144,20 @@ impl Estimates {
     ) -> Cost {
         let (length, piece, state, drift) = run;
         let mut rest = 0;
-        if let (Some(table), Some(drift)) = (&self.drifts, drift) {
-            rest = drift_node(problem, piece, drift).map_or(NEVER, |node| table.at(length, node));
+        if let Some(passes) = &self.pieces {
+            rest = passes.rest(problem, length, piece, drift);
         }
-        if let Some((explored, table)) = &self.exact {
+        if let Some((explored, passes)) = &self.exact {
             // What was not reached is from another scope, of which nothing is known here.
-            let node = explored.node(piece, (state, drift.filter(|_| self.is_by_drift).unwrap_or(0)));
+            let node = explored.node(piece, (state, 0));
+            rest = rest.max(node.map_or(0, |node| passes.rest(problem, length, node, drift)));
+        }
+        if let (Some((explored, table)), Some(drift)) = (&self.drifting, drift) {
+            let node = explored.node(piece, (state, drift));
             rest = rest.max(node.map_or(0, |node| table.at(length, node)));
         }
         if let Some(classes) = &mut self.classes {
-            rest = rest.max(classes.rest(automaton, length, piece, state));
+            rest = rest.max(classes.rest(problem, automaton, run));
         }
         rest
     }
@@ -128,18 +172,6 @@ impl Estimates {
     ) -> bool {
         self.classes.as_mut().is_some_and(|classes| classes.grow(problem, automaton, scope))
     }
-}
-
-/// The pass over all pairs of piece and state, and drift if asked for, unless they are too many.
-fn exact(
-    problem: &Problem<'_>,
-    automaton: &mut Automaton<'_>,
-    scope: &Scope,
-    by_drift: bool,
-) -> Option<Exact> {
-    let mut explored = triples(problem, automaton, scope, by_drift, NODE_LIMIT)?;
-    let table = affordable(problem, std::mem::take(&mut explored.graph))?;
-    Some((explored, table))
 }
 
 /// All pairs of piece and state that runs reach, with the drift if asked for, which is 0 otherwise; `None` when they
@@ -160,19 +192,11 @@ pub(super) fn triples(
                 continue;
             }
             if let Some(next) = automaton.step(state, step.to) {
-                joins.push((step.to, step.cost, vec![(next, drift)]));
+                joins.push((*step, vec![(next, drift)]));
             }
         }
         scope.stop[piece].filter(|_| automaton.accepts(state))
     })
-}
-
-/// The pass over a graph, unless it would take too long.
-fn affordable(problem: &Problem<'_>, graph: Graph) -> Option<Table<Cost>> {
-    let longest = *problem.window.end();
-    (graph.work(longest) <= WORK_LIMIT
-        && Table::<Cost>::least_bytes(graph.len(), graph.widest(), longest) <= TABLE_BUDGET)
-        .then(|| Table::new(graph, problem.window.clone(), TABLE_BUDGET, |cost| cost))
 }
 
 /// A class against the rest, by number, and the Euler characteristic where it is read.
@@ -182,7 +206,9 @@ type ClassKey = (u32, i32);
 struct Classes {
     goal: Goal,
     explored: Explored<ClassKey>,
-    table: Table<Cost>,
+    passes: Passes,
+    /// Whether they were asked to know prices.
+    has_prices: bool,
     /// Partitions of at most two classes, by number.
     names: Names,
     /// The nodes of each piece and state that were met, and how many classes have no node.
@@ -265,8 +291,9 @@ impl Classes {
         }
         CLASS_SIZES.iter().find_map(|&most_portals| {
             let mut names = Names { most_portals, ..Names::default() };
-            let (explored, table) = Self::explore(problem, goal, scope, &mut names, Vec::new())?;
-            Some(Self { goal, explored, table, names, nodes: FxHashMap::default(), missing: 0 })
+            let (explored, passes) = Self::explore(problem, goal, scope, &mut names, Vec::new())?;
+            let nodes = FxHashMap::default();
+            Some(Self { goal, explored, passes, has_prices: false, names, nodes, missing: 0 })
         })
     }
 
@@ -276,7 +303,7 @@ impl Classes {
         scope: &Scope,
         names: &mut Names,
         seeds: Vec<(usize, ClassKey)>,
-    ) -> Option<(Explored<ClassKey>, Table<Cost>)> {
+    ) -> Option<(Explored<ClassKey>, Passes)> {
         let euler = |run: &Descriptor| if goal.holes.is_some() { run.euler() as i32 } else { 0 };
         let mut starts = seeds;
         for &(piece, _) in &scope.starts {
@@ -292,7 +319,7 @@ impl Classes {
                 if goal.holes.is_some_and(|holes| 1 - i64::from(euler) > i64::from(holes.most())) {
                     continue;
                 }
-                joins.push((step.to, step.cost, classes.iter().map(|&class| (class, euler)).collect()));
+                joins.push((*step, classes.iter().map(|&class| (class, euler)).collect()));
             }
             let run = &names.partitions[class as usize];
             scope.stop[piece].filter(|_| may_stop(goal, problem.shape, run, euler))
@@ -301,12 +328,31 @@ impl Classes {
         let explored = Explored::new(problem, starts, NODE_LIMIT, expand);
 
         let mut explored = explored?;
-        let table = affordable(problem, std::mem::take(&mut explored.graph))?;
-        Some((explored, table))
+        let passes = Passes::new(problem, std::mem::take(&mut explored.graph))?;
+        Some((explored, passes))
     }
 
-    fn rest(&mut self, automaton: &Automaton<'_>, length: u32, piece: usize, state: StateId) -> Cost {
-        let Self { goal, explored, table, names, nodes, missing } = self;
+    fn learn_prices(&mut self, problem: &Problem<'_>, scope: &Scope) {
+        let Self { goal, explored, passes, names, .. } = self;
+        let mut starts = Vec::new();
+        for &(piece, cost) in &scope.starts {
+            let run = &problem.descriptors[piece];
+            let euler = if goal.holes.is_some() { run.euler() as i32 } else { 0 };
+            let nodes =
+                names.classes(run).into_iter().filter_map(|class| explored.node(piece, (class, euler)));
+            starts.extend(nodes.map(|node| (node, problem.widths[piece], cost)));
+        }
+        passes.learn_prices(problem, &starts);
+        self.has_prices = true;
+    }
+
+    fn rest(
+        &mut self,
+        problem: &Problem<'_>,
+        automaton: &Automaton<'_>,
+        (length, piece, state, drift): (u32, usize, StateId, Option<i32>),
+    ) -> Cost {
+        let Self { goal, explored, passes, names, nodes, missing, .. } = self;
         let (nodes, _) = nodes.entry((piece as u32, state)).or_insert_with(|| {
             let keys = keys_of(*goal, automaton, names, state);
             let found: Vec<u32> =
@@ -315,7 +361,7 @@ impl Classes {
             *missing += unknown;
             (found, unknown)
         });
-        nodes.iter().map(|&node| table.at(length, node as usize)).max().unwrap_or(0)
+        nodes.iter().map(|&node| passes.rest(problem, length, node as usize, drift)).max().unwrap_or(0)
     }
 
     fn grow(&mut self, problem: &Problem<'_>, automaton: &Automaton<'_>, scope: &Scope) -> bool {
@@ -332,11 +378,15 @@ impl Classes {
         }
 
         self.missing = 0;
-        let Some((explored, table)) = Self::explore(problem, self.goal, scope, &mut self.names, seeds) else {
+        let Some((explored, passes)) = Self::explore(problem, self.goal, scope, &mut self.names, seeds)
+        else {
             return false;
         };
-        (self.explored, self.table) = (explored, table);
+        (self.explored, self.passes) = (explored, passes);
         self.nodes.clear();
+        if self.has_prices {
+            self.learn_prices(problem, scope);
+        }
         true
     }
 }

@@ -8,10 +8,10 @@
 //! The drift of a ring is measured from where it is opened, so a ring stays in the band if it does from one
 //! of its narrowest cuts.
 
-use super::estimates::{Estimates, TABLE_BUDGET};
+use super::estimates::{Estimates, Level};
 use super::graph::{Scope, of_pieces};
 use super::problem::{Cost, Problem};
-use super::table::{NEVER, Table};
+use super::table::{NEVER, TABLE_BUDGET, Table};
 use crate::topology::{Automaton, Shape};
 
 /// Runs that are looked at together.
@@ -21,10 +21,8 @@ pub(super) struct Family {
     pub(super) members: Vec<Member>,
     /// What was learned of all members.
     pub(super) estimates: Estimates,
-    /// Whether it was.
-    pub(super) has_learned: bool,
-    /// Whether what was learned knows the drift.
-    pub(super) has_learned_drift: bool,
+    /// How much.
+    pub(super) level: Level,
     /// Whether each member is searched by itself, with its own end.
     pub(super) is_ring: bool,
 }
@@ -115,14 +113,8 @@ impl Family {
         if let ([only], false) = (&mut members[..], is_ring) {
             only.table = Some(Box::new(table));
         }
-        let mut family = Self {
-            scope,
-            members,
-            estimates: Estimates::default(),
-            has_learned: false,
-            has_learned_drift: false,
-            is_ring,
-        };
+        let mut family =
+            Self { scope, members, estimates: Estimates::default(), level: Level::Pieces, is_ring };
         family.sort();
         family
     }
@@ -138,9 +130,18 @@ impl Family {
         self.members.iter().map(|m| m.estimate).min().unwrap_or(NEVER)
     }
 
-    /// Makes the estimates that know topology, and looks at the members again in their light.
-    pub(super) fn learn_topology(&mut self, problem: &Problem<'_>, automaton: &mut Automaton<'_>) {
-        self.estimates.learn_topology(problem, automaton, &self.scope);
+    /// Makes the estimates up to `level`, and looks at the members again in their light.
+    pub(super) fn learn(&mut self, problem: &Problem<'_>, automaton: &mut Automaton<'_>, level: Level) {
+        if self.level < Level::Topology {
+            self.estimates.learn_topology(problem, automaton, &self.scope);
+        }
+        if self.level < Level::Prices && level >= Level::Prices {
+            self.estimates.learn_prices(problem, automaton, &self.scope);
+        }
+        if level == Level::Drift {
+            self.estimates.learn_drift(problem, automaton, &self.scope);
+        }
+        self.level = level;
         self.look_again(problem, automaton);
     }
 
@@ -182,7 +183,8 @@ impl Member {
 }
 
 fn piece_table(problem: &Problem<'_>, scope: &Scope) -> Table<Cost> {
-    let mut table = Table::new(of_pieces(problem, scope), problem.window.clone(), TABLE_BUDGET / 4, |c| c);
+    let mut table =
+        Table::new(of_pieces(problem, scope).into(), problem.window.clone(), TABLE_BUDGET / 4, |c, _| c);
     table.load(0);
     table
 }

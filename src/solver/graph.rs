@@ -8,7 +8,7 @@ use std::hash::Hash;
 
 use rustc_hash::FxHashMap;
 
-use super::problem::{Cost, Problem};
+use super::problem::{Cost, Problem, Step};
 
 /// A join.
 #[derive(Debug, Clone, Copy)]
@@ -17,8 +17,18 @@ pub(super) struct Edge {
     pub(super) to: u32,
     /// The width of the piece that is joined, in bins.
     pub(super) width: u32,
+    /// By how much it raises the run, in units of drift.
+    pub(super) rise: i32,
     /// Whether this edge and the next are one join to two nodes at once, both of which must be completed.
     pub(super) and_next: bool,
+}
+
+impl Edge {
+    /// A step to a node.
+    fn new(problem: &Problem<'_>, step: &Step, to: u32) -> Self {
+        let &Step { to: piece, cost, rise } = step;
+        Self { cost, to, width: problem.widths[piece], rise, and_next: false }
+    }
 }
 
 /// The part of a problem that a search looks at.
@@ -95,38 +105,11 @@ pub(super) fn of_pieces(problem: &Problem<'_>, scope: &Scope) -> Graph {
     for piece in 0..problem.pieces() {
         let is_allowed = scope.allowed[piece];
         for step in problem.steps[piece].iter().filter(|s| is_allowed && scope.allowed[s.to]) {
-            let width = problem.widths[step.to];
-            graph.add(Edge { cost: step.cost, to: step.to as u32, width, and_next: false });
+            graph.add(Edge::new(problem, step, step.to as u32));
         }
         graph.finish_node(scope.stop[piece].filter(|_| is_allowed));
     }
     graph
-}
-
-/// The joins with the drift: a node for each piece and drift within the limit, numbered by [`drift_node`].
-pub(super) fn of_drifts(problem: &Problem<'_>, scope: &Scope) -> Graph {
-    let limit = problem.drift_limit;
-    let mut graph = Graph::new();
-    for piece in 0..problem.pieces() {
-        let is_allowed = scope.allowed[piece];
-        for drift in -limit..=limit {
-            for step in problem.steps[piece].iter().filter(|s| is_allowed && scope.allowed[s.to]) {
-                if let Some(to) = drift_node(problem, step.to, drift.saturating_add(step.rise)) {
-                    let width = problem.widths[step.to];
-                    graph.add(Edge { cost: step.cost, to: to as u32, width, and_next: false });
-                }
-            }
-            graph.finish_node(scope.stop[piece].filter(|_| is_allowed));
-        }
-    }
-    graph
-}
-
-/// The node of a piece and a drift; `None` outside the band.
-pub(super) fn drift_node(problem: &Problem<'_>, piece: usize, drift: i32) -> Option<usize> {
-    let limit = problem.drift_limit;
-    let size = 2 * limit as usize + 1;
-    (drift.abs() <= limit).then(|| piece * size + (drift + limit) as usize)
 }
 
 /// A graph that is explored from its starts, with the nodes found by what is known of a run.
@@ -138,7 +121,7 @@ pub(super) struct Explored<K> {
 }
 
 /// What can follow at a node: the joins, each with the keys of the nodes that it leads to.
-pub(super) type Joins<K> = Vec<(usize, Cost, Vec<K>)>;
+pub(super) type Joins<K> = Vec<(Step, Vec<K>)>;
 
 impl<K: Hash + Eq + Clone> Explored<K> {
     /// Everything that can be reached from `starts`; `None` when that is more than `limit` nodes. `expand` gives
@@ -162,12 +145,11 @@ impl<K: Hash + Eq + Clone> Explored<K> {
             let (piece, key) = found.keys[at].clone();
             joins.clear();
             let stop = expand(piece as usize, &key, &mut joins);
-            for (to, cost, keys) in joins.drain(..) {
+            for (step, keys) in joins.drain(..) {
                 let last = keys.len().saturating_sub(1);
                 for (i, key) in keys.into_iter().enumerate() {
-                    let node = found.meet(to, key);
-                    let width = problem.widths[to];
-                    found.graph.add(Edge { cost, to: node, width, and_next: i < last });
+                    let node = found.meet(step.to, key);
+                    found.graph.add(Edge { and_next: i < last, ..Edge::new(problem, &step, node) });
                 }
             }
             found.graph.finish_node(stop);

@@ -25,9 +25,11 @@ mod graph;
 mod labels;
 mod lengths;
 mod pass;
+mod priced;
 mod problem;
 mod random;
 mod reach;
+mod recurrence;
 mod table;
 mod variety;
 

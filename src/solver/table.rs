@@ -1,16 +1,20 @@
 //! Passes along the length: what completing a run amounts to, for every length and node of a graph.
 //!
 //! The same pass computes least costs, numbers of runs and sums of weights; [`Weigh`] says which. It goes from
-//! the longest length down and needs only as many lengths at a time as the widest piece has bins. Where the
-//! whole table would not fit its budget, a strip of that many lengths is kept at regular intervals, and the
-//! rows between two strips are computed again when they are asked for. Walks that go upwards along the length
-//! do that once, so time stays linear in the length and memory grows with the length only by the strips, of
-//! which there are about as many as a strip of rows between them is long.
+//! the longest length down; the depth of a row is how far below that it lies. A row is made of those above it, as
+//! many as the widest piece has bins, so where as many recur with a constant more, all rows below do, and none is
+//! computed any more: far from the end, the cheapest runs go round the cheapest cycle ([`super::recurrence`]).
+//!
+//! Where the rows until then do not fit the budget, those that a block of rows is made of are kept, and the block
+//! is computed again when it is asked for. Walks that go along the length do that once for each block, so time stays
+//! linear in the length.
 
 use std::ops::RangeInclusive;
+use std::sync::Arc;
 
 use super::graph::Graph;
 use super::problem::Cost;
+use super::recurrence::Recurrence;
 
 /// What a pass adds up.
 pub(super) trait Weigh: Copy + PartialEq {
@@ -25,8 +29,20 @@ pub(super) trait Weigh: Copy + PartialEq {
 
     /// Of one join that has to be completed in two ways at once.
     fn and(self, other: Self) -> Self;
+
+    /// As a cost that adds up; `None` of no run, and of weights that are no costs, which never recur.
+    fn as_cost(self) -> Option<i64> {
+        None
+    }
+
+    /// The cost with so much more.
+    fn shifted(self, _more: i64) -> Self {
+        self
+    }
 }
 
+/// Bytes of a table up to which all its rows are kept.
+pub(super) const TABLE_BUDGET: usize = 256 << 20;
 /// A cost that nothing reaches.
 pub(super) const NEVER: Cost = Cost::MAX;
 
@@ -45,69 +61,163 @@ impl Weigh for Cost {
     fn and(self, other: Self) -> Self {
         self.max(other)
     }
+
+    fn as_cost(self) -> Option<i64> {
+        i64::try_from(self).ok()
+    }
+
+    fn shifted(self, more: i64) -> Self {
+        if self == NEVER { self } else { self.saturating_add_signed(more) }
+    }
 }
 
 /// The results of a pass.
 pub(super) struct Table<W> {
-    graph: Graph,
+    graph: Arc<Graph>,
     /// By edge.
     weights: Vec<W>,
     /// By node.
     stops: Vec<W>,
     window: RangeInclusive<u32>,
     widest: usize,
-    /// Lengths in a block, at least the widest.
+    /// Rows in a block.
     block: usize,
-    /// The first rows of each block, as many as the widest piece has bins.
+    /// For each block the rows that it is made of, as many as the widest piece has bins.
     strips: Vec<Vec<W>>,
-    /// The rows of one block and the first ones of the next.
+    /// The strip of a block, and the block.
     rows: Vec<W>,
     /// The block that `rows` holds.
     loaded: usize,
+    tail: Option<Tail<W>>,
+}
+
+/// Rows that recur.
+struct Tail<W> {
+    /// The depth of the first.
+    from: usize,
+    rows: Vec<W>,
+    period: usize,
+    /// What each recurrence costs more.
+    excess: i64,
 }
 
 impl<W: Weigh> Table<W> {
-    /// The pass over `graph` for runs whose length is in `window`. Costs are turned into weights by `weigh`.
-    /// Beyond `budget` bytes not all rows are kept.
+    /// The pass over `graph` for runs whose length is in `window`. The costs and rises of joins are turned into
+    /// weights by `weigh`, those of stopping with a rise of 0. Beyond `budget` bytes not all rows are kept.
     pub(super) fn new(
-        graph: Graph,
+        graph: Arc<Graph>,
         window: RangeInclusive<u32>,
         budget: usize,
-        weigh: impl Fn(Cost) -> W,
+        weigh: impl Fn(Cost, i32) -> W,
     ) -> Self {
-        let layers = *window.end() as usize + 1;
-        let widest = graph.widest();
-        let row = graph.len().max(1) * size_of::<W>();
-        let block = match (layers + widest).saturating_mul(row) <= budget {
-            true => layers.max(widest),
-            false => widest.max((layers * widest).isqrt()),
-        };
-        let weights = graph.all_edges().iter().map(|e| weigh(e.cost)).collect();
-        let stops = (0..graph.len()).map(|n| graph.stop(n).map_or(W::NONE, &weigh)).collect();
-        let rows = vec![W::NONE; (block + widest) * graph.len()];
-        let blocks = layers.div_ceil(block);
-        let mut table =
-            Self { graph, weights, stops, window, widest, block, strips: Vec::new(), rows, loaded: blocks };
-        for at in (0..blocks).rev() {
-            table.fill(at);
-            if blocks > 1 {
-                table.strips.push(table.rows[..table.widest * table.graph.len()].to_vec());
-            }
-        }
-        table.strips.reverse();
-        table
+        Self::within(graph, window, budget, usize::MAX, weigh).expect("patience does not end")
     }
 
-    /// The bytes that a table over so many nodes takes at least, whatever its budget.
-    pub(super) fn least_bytes(nodes: usize, widest: usize, longest: u32) -> usize {
-        let block = widest.max((longest as usize * widest).isqrt());
-        let strips = longest as usize / block + 2;
-        (block + widest + strips * widest).saturating_mul(nodes).saturating_mul(size_of::<W>())
+    /// The same with so many additions at most: costs below the rows that this makes are underestimated, as if the
+    /// least that they grew by there were all that they grow by. `None` when that says nothing.
+    pub(super) fn within(
+        graph: Arc<Graph>,
+        window: RangeInclusive<u32>,
+        budget: usize,
+        patience: usize,
+        weigh: impl Fn(Cost, i32) -> W,
+    ) -> Option<Self> {
+        let layers = *window.end() as usize + 1;
+        let widest = graph.widest();
+        let n = graph.len();
+        let affordable = (budget / (n.max(1) * size_of::<W>())).saturating_sub(widest);
+        let block = affordable.max((layers * widest).isqrt()).max(widest).min(layers.max(widest));
+        let weights = graph.all_edges().iter().map(|e| weigh(e.cost, e.rise)).collect();
+        let stops = (0..n).map(|node| graph.stop(node).map_or(W::NONE, |cost| weigh(cost, 0))).collect();
+        let most_rows = (patience / graph.work(1).max(1)).max(1);
+        let rows = vec![W::NONE; widest * n];
+        let mut table = Self {
+            graph,
+            weights,
+            stops,
+            window,
+            widest,
+            block,
+            strips: Vec::new(),
+            rows,
+            loaded: 0,
+            tail: None,
+        };
+        table.go_down(most_rows)?;
+        Some(table)
+    }
+
+    /// Computes all rows, or as many as there are before they recur, or `most`.
+    fn go_down(&mut self, most: usize) -> Option<()> {
+        let n = self.graph.len();
+        let longest = *self.window.end() as usize;
+        // As long as runs may stop, costs do not grow.
+        let first = longest - *self.window.start() as usize + 1;
+        let mut recurrence = Recurrence::new();
+        for depth in 0..=longest {
+            let row = depth % self.block;
+            if row == 0 {
+                if depth > 0 {
+                    let at = self.block * n;
+                    self.rows.copy_within(at..at + self.widest * n, 0);
+                }
+                self.loaded = depth / self.block;
+                self.strips.push(self.rows[..self.widest * n].to_vec());
+            }
+            self.fill_row(row);
+            if depth < first {
+                continue;
+            }
+            let at = (self.widest + row) * n;
+            let found = recurrence.next(&self.rows[at..at + n], self.widest);
+            let found = found.and_then(|period| Some((period, self.excess(row, period, true)?)));
+            let found = match found {
+                None if depth >= most => {
+                    let period = (row + 1).min(depth - first);
+                    Some((period, self.excess(row, period, false)?))
+                }
+                found => found,
+            };
+            if let Some((period, excess)) = found {
+                let rows = self.rows[at + n - period * n..at + n].to_vec();
+                self.tail = Some(Tail { from: depth + 1 - period, rows, period, excess });
+                break;
+            }
+        }
+        Some(())
+    }
+
+    /// By what the rows down to `row` of the block, as many as the widest piece has bins, cost more than those a
+    /// period above: all by the same if they have to be `equal`, else at least. `None` also when those are not there
+    /// any more.
+    fn excess(&self, row: usize, period: usize, equal: bool) -> Option<i64> {
+        let n = self.graph.len();
+        let end = (self.widest + row + 1) * n;
+        let (low, high) = (end.checked_sub(self.widest * n)?, end.checked_sub((self.widest + period) * n)?);
+        if period == 0 {
+            return None;
+        }
+        let mut excess: Option<i64> = None;
+        for (&here, &above) in self.rows[low..end].iter().zip(&self.rows[high..]) {
+            let more = match (here.as_cost(), above.as_cost()) {
+                (None, None) => continue,
+                (None, Some(_)) if !equal => continue,
+                (Some(here), Some(above)) => here - above,
+                _ => return None,
+            };
+            if equal && excess.is_some_and(|known| known != more) {
+                return None;
+            }
+            excess = Some(excess.map_or(more, |known| known.min(more)));
+        }
+        excess
     }
 
     /// The memory that the rows take.
     pub(super) fn bytes(&self) -> usize {
-        (self.rows.len() + self.strips.iter().map(Vec::len).sum::<usize>()) * size_of::<W>()
+        let strips: usize = self.strips.iter().map(Vec::len).sum();
+        let tail = self.tail.as_ref().map_or(0, |tail| tail.rows.len());
+        (self.rows.len() + strips + tail) * size_of::<W>()
     }
 
     /// The graph.
@@ -117,29 +227,37 @@ impl<W: Weigh> Table<W> {
 
     /// Makes the rows of `length` and the ones that a step can lead to available.
     pub(super) fn load(&mut self, length: u32) {
-        let wanted = length as usize / self.block;
-        if wanted != self.loaded && wanted * self.block <= *self.window.end() as usize {
-            let n = self.graph.len();
-            match self.strips.get(wanted + 1) {
-                Some(strip) => {
-                    let at = self.block * n;
-                    self.rows[at..at + strip.len()].copy_from_slice(strip);
-                }
-                None => self.rows[self.block * n..].fill(W::NONE),
+        let Some(depth) = self.window.end().checked_sub(length) else { return };
+        let depth = match &self.tail {
+            // A step from a row that recurs may lead to the rows before.
+            Some(tail) if depth as usize >= tail.from => match tail.from.checked_sub(1) {
+                Some(last) if depth as usize <= last + self.widest => last,
+                _ => return,
+            },
+            _ => depth as usize,
+        };
+        let wanted = depth / self.block;
+        if wanted != self.loaded {
+            let strip = &self.strips[wanted];
+            self.rows[..strip.len()].copy_from_slice(strip);
+            self.loaded = wanted;
+            let end = self.tail.as_ref().map_or(*self.window.end() as usize + 1, |tail| tail.from);
+            for row in 0..self.block.min(end - wanted * self.block) {
+                self.fill_row(row);
             }
-            self.fill_block(wanted);
         }
     }
 
     /// What completing a run of `length` that ends at `node` amounts to. The length has to be loaded.
     pub(super) fn at(&self, length: u32, node: usize) -> W {
-        let n = self.graph.len();
-        match (length as usize).checked_sub(self.loaded * self.block) {
-            Some(row) if length <= *self.window.end() => {
-                self.rows.get(row * n + node).copied().unwrap_or(W::NONE)
-            }
-            _ => W::NONE,
+        let Some(depth) = self.window.end().checked_sub(length) else { return W::NONE };
+        let (depth, n) = (depth as usize, self.graph.len());
+        if let Some(tail) = self.tail.as_ref().filter(|tail| depth >= tail.from) {
+            let (times, row) = ((depth - tail.from) / tail.period, (depth - tail.from) % tail.period);
+            return tail.rows[row * n + node].shifted(tail.excess * times as i64);
         }
+        let row = (depth + self.widest).checked_sub(self.loaded * self.block);
+        row.and_then(|row| self.rows.get(row * n + node).copied()).unwrap_or(W::NONE)
     }
 
     /// What stopping at `node` amounts to, at a length in the window.
@@ -152,47 +270,35 @@ impl<W: Weigh> Table<W> {
         self.weights[edge]
     }
 
-    /// Moves from the block above, whose rows are there, to this one.
-    fn fill(&mut self, block: usize) {
+    /// Computes a row of the loaded block from those before it.
+    fn fill_row(&mut self, row: usize) {
         let n = self.graph.len();
-        let above = self.widest * n;
-        self.rows.copy_within(..above, self.block * n);
-        self.fill_block(block);
-    }
-
-    fn fill_block(&mut self, block: usize) {
-        let n = self.graph.len();
-        let edges = self.graph.all_edges();
-        let longest = *self.window.end() as usize;
-        for row in (0..self.block).rev() {
-            let length = block * self.block + row;
-            let (below, above) = self.rows.split_at_mut((row + 1) * n);
-            let here = &mut below[row * n..];
-            if length > longest {
-                here.fill(W::NONE);
-                continue;
-            }
-            let may_stop = self.window.contains(&(length as u32));
-            for (node, value) in here.iter_mut().enumerate() {
-                let mut sum = if may_stop { self.stops[node] } else { W::NONE };
-                let range = self.graph.edges_of(node);
-                let mut pending = None;
-                for (edge, &weight) in edges[range.clone()].iter().zip(&self.weights[range]) {
-                    let rest = above[(edge.width as usize - 1) * n + edge.to as usize];
-                    let rest = match pending.take() {
-                        None => rest,
-                        Some(other) => rest.and(other),
-                    };
-                    if edge.and_next {
-                        pending = Some(rest);
-                    } else if rest != W::NONE {
-                        sum = sum.or(rest.after(weight));
-                    }
-                }
-                *value = sum;
-            }
+        let at = (self.widest + row) * n;
+        if self.rows.len() < at + n {
+            self.rows.resize(at + n, W::NONE);
         }
-        self.loaded = block;
+        let (above, here) = self.rows.split_at_mut(at);
+        let length = *self.window.end() as usize - (self.loaded * self.block + row);
+        let may_stop = self.window.contains(&(length as u32));
+        let edges = self.graph.all_edges();
+        for (node, value) in here[..n].iter_mut().enumerate() {
+            let mut sum = if may_stop { self.stops[node] } else { W::NONE };
+            let range = self.graph.edges_of(node);
+            let mut pending = None;
+            for (edge, &weight) in edges[range.clone()].iter().zip(&self.weights[range]) {
+                let rest = above[at - edge.width as usize * n + edge.to as usize];
+                let rest = match pending.take() {
+                    None => rest,
+                    Some(other) => rest.and(other),
+                };
+                if edge.and_next {
+                    pending = Some(rest);
+                } else if rest != W::NONE {
+                    sum = sum.or(rest.after(weight));
+                }
+            }
+            *value = sum;
+        }
     }
 }
 
@@ -206,7 +312,7 @@ mod tests {
         let mut graph = Graph::new();
         for (node, edges) in edges.iter().enumerate() {
             for &(to, width, cost) in edges {
-                graph.add(Edge { cost, to: to % 4, width, and_next: false });
+                graph.add(Edge { cost, to: to % 4, width, rise: 0, and_next: false });
             }
             graph.finish_node((node == 2).then_some(3));
         }
@@ -222,8 +328,8 @@ mod tests {
             questions in prop::collection::vec((0u32..300, 0usize..4), 1..20),
         ) {
             let window = end.saturating_sub(2)..=end;
-            let mut whole = Table::new(graph(&edges), window.clone(), usize::MAX, |c| c);
-            let mut strips = Table::new(graph(&edges), window, 0, |c| c);
+            let mut whole = Table::new(graph(&edges).into(), window.clone(), usize::MAX, |c, _| c);
+            let mut strips = Table::new(graph(&edges).into(), window, 0, |c, _| c);
             for (length, node) in questions {
                 whole.load(length);
                 strips.load(length);
