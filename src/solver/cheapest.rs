@@ -22,11 +22,11 @@ use super::reach::{is_never, is_out_of_range};
 use super::table::NEVER;
 use crate::topology::Automaton;
 
-/// Labels after which the dear estimates are made. Most goals near the exemplar's own topology need fewer.
+/// Effort after which the dear estimates are made. Most goals near the exemplar's own topology need fewer.
 const SHORT: usize = 20_000;
-/// Labels after which the dearest of all is made, the pass over all pairs of piece and state with the drift.
-const LONG: usize = 400_000;
-/// A threshold is too high when it lets in so many times the labels of the last one.
+/// Effort after which the dearest of all is made, the pass over all pairs of piece and state with the drift.
+const LONG: usize = 1_500_000;
+/// A threshold is too high when it lets in so many times the effort of the last one.
 const LEAP: usize = 24;
 /// It is lowered to so small a part of the step that led to it.
 const STEP_BACK: Cost = 6;
@@ -36,6 +36,8 @@ const FEW: usize = 8;
 const LABELS_PER_RUN: usize = 16;
 /// Runs of each length that the beam keeps; widened until a run is found.
 const BEAMS: [usize; 3] = [300, 3_000, 30_000];
+/// Runs of each length that it keeps at least.
+const NARROWEST_BEAM: usize = 30;
 
 /// The cheapest run, or ring, that `automaton` accepts.
 pub(super) fn cheapest(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
@@ -50,7 +52,8 @@ pub(super) fn cheapest(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -> 
         by_drift: false,
         level: if automaton.goal().is_free() { Level::Topology } else { Level::Pieces },
         labels: 0,
-        labels_before: 0,
+        effort: 0,
+        effort_before: 0,
         last: 0,
     };
     if problem.variety.is_some() {
@@ -72,10 +75,18 @@ struct Cheapest<'p> {
     /// Which estimates were found to be worth while.
     level: Level,
     labels: usize,
-    /// Labels that were made before the estimates were those of the level, and runs told apart by drift or not.
-    labels_before: usize,
-    /// Labels of the last walks with one threshold.
+    /// The work of all walks, counted in labels.
+    effort: usize,
+    /// Of it, what was done before the estimates were those of the level, and runs told apart by drift or not.
+    effort_before: usize,
+    /// Of the last walks with one threshold.
     last: usize,
+}
+
+/// How far the search was.
+struct Standing {
+    effort: usize,
+    floor: Cost,
 }
 
 /// What the walks over all families with one threshold came to.
@@ -87,31 +98,36 @@ struct Round {
 
 impl Cheapest<'_> {
     fn solve(mut self, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
+        // Walks in a row that were too long.
+        let mut leaps = 0;
         while self.threshold != NEVER {
-            let most = self.label_limit(automaton);
-            let patience = self.patience().map_or(most, |labels| most.min(self.labels_before + labels));
+            let most = self.effort_limit(automaton);
+            let patience = self.patience().map_or(most, |effort| most.min(self.effort_before + effort));
             // Of a step that is as small as it can be, nothing can be taken back.
             let is_leap = self.threshold > self.floor + STEP_BACK;
-            let leap = if is_leap { self.labels + (LEAP * self.last).max(SHORT) } else { usize::MAX };
-            let before = self.labels;
+            let leap =
+                if is_leap { self.effort + ((LEAP * self.last).max(SHORT) << leaps) } else { usize::MAX };
+            let before = Standing { effort: self.effort, floor: self.floor };
             let round = self.round(automaton, patience.min(leap));
             if round.is_cut_short {
-                if self.labels > patience {
+                if self.effort > patience {
                     if self.patience().is_none() {
                         return self.beam(automaton);
                     }
                     self.learn(automaton);
                 } else {
                     self.threshold = self.floor + (self.threshold - self.floor) / STEP_BACK;
+                    leaps += 1;
                 }
                 continue;
             }
-            self.last = self.labels - before;
+            self.last = self.effort - before.effort;
+            leaps = 0;
             let best = self.best.as_ref().map_or(NEVER, |&(_, _, total)| total);
             if !self.by_drift && round.drifted_at < best && round.drifted_at <= self.threshold {
                 // Up to there, nothing was left out.
                 self.by_drift = true;
-                self.labels_before = self.labels;
+                self.effort_before = self.effort;
                 self.floor = self.floor.max(round.drifted_at);
                 self.threshold = round.drifted_at;
                 self.raise();
@@ -123,8 +139,11 @@ impl Cheapest<'_> {
                 break;
             }
             self.floor = self.floor.max(round.beyond.least());
-            self.threshold = round.beyond.next((self.last / LABELS_PER_RUN).max(FEW));
-            if self.patience().is_some_and(|labels| self.labels > self.labels_before + labels) {
+            // Where many estimates lie close together, steps grow all the same.
+            let step = 2 * (self.threshold - before.floor);
+            let next = round.beyond.next((self.last / LABELS_PER_RUN).max(FEW));
+            self.threshold = next.max(self.floor.saturating_add(step).min(NEVER - 1));
+            if self.patience().is_some_and(|effort| self.effort > self.effort_before + effort) {
                 self.learn(automaton);
             }
             let problem = self.problem;
@@ -138,7 +157,7 @@ impl Cheapest<'_> {
         self.finish(automaton)
     }
 
-    /// Labels after which the estimates of the next level are made; `None` when there is none.
+    /// Effort after which the estimates of the next level are made; `None` when there is none.
     fn patience(&self) -> Option<usize> {
         match (self.level, self.by_drift) {
             (Level::Pieces, _) | (Level::Topology, true) => Some(SHORT),
@@ -154,7 +173,7 @@ impl Cheapest<'_> {
             (Level::Pieces | Level::Topology, _) => Level::Prices,
             (Level::Prices | Level::Drift, _) => Level::Drift,
         };
-        self.labels_before = self.labels;
+        self.effort_before = self.effort;
         self.catch_up(automaton);
     }
 
@@ -194,12 +213,14 @@ impl Cheapest<'_> {
                     ceiling,
                     by_drift: self.by_drift,
                     width: usize::MAX,
-                    label_limit: limit.saturating_sub(self.labels),
+                    effort_limit: limit.saturating_sub(self.effort),
                 };
                 let beyond = Beyond::new(self.threshold);
-                let Passage { found, drifted_at, beyond, labels, is_cut_short } = walk.run(automaton, beyond);
+                let Passage { found, drifted_at, beyond, labels, effort, is_cut_short } =
+                    walk.run(automaton, beyond);
                 member.keep_table(table);
                 self.labels += labels;
+                self.effort += effort;
                 round.drifted_at = round.drifted_at.min(drifted_at);
                 round.beyond.add(&beyond);
                 self.best = found.or(self.best.take());
@@ -258,21 +279,23 @@ impl Cheapest<'_> {
         };
     }
 
-    /// Labels at which the search is given up, in all walks together.
-    fn label_limit(&self, automaton: &Automaton<'_>) -> usize {
+    /// Effort at which the search is given up, in all walks together: that of as many labels as fit the memory.
+    fn effort_limit(&self, automaton: &Automaton<'_>) -> usize {
         self.problem.memory_limit.saturating_sub(automaton.bytes()) / LABEL_BYTES
     }
 
     /// The best run that a beam finds, member by member.
     fn beam(mut self, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
-        let limit = (self.problem.memory_limit / LABEL_BYTES).max(SHORT);
-        let mut left = limit;
+        let mut left = self.problem.memory_limit / LABEL_BYTES;
+        let layers = *self.problem.window.end() as usize;
         for width in BEAMS {
+            // A long run has to be walked through to its end all the same, so its beam is narrower.
+            let width = width.min(left / layers.max(1)).max(NARROWEST_BEAM);
             for (family, member) in self.in_order() {
                 if self.best.is_some() || left == 0 {
                     break;
                 }
-                left = left.saturating_sub(self.walk_member(automaton, (family, member), width, left));
+                left = left.saturating_sub(self.walk_member(automaton, (family, member), width));
             }
         }
         self.finish(automaton)
@@ -295,7 +318,7 @@ impl Cheapest<'_> {
         let width = (PATIENCE / terms.max(1)).clamp(8, 400);
         for width in [width, width * 8] {
             for at in self.in_order().into_iter().take(MEMBERS) {
-                self.walk_member(automaton, at, width, usize::MAX);
+                self.walk_member(automaton, at, width);
             }
             if self.best.is_some() {
                 break;
@@ -312,13 +335,12 @@ impl Cheapest<'_> {
         all
     }
 
-    /// Walks over one member without a threshold, keeping so many runs of each length; the labels it took.
+    /// Walks over one member without a threshold, keeping so many runs of each length; the effort it took.
     fn walk_member(
         &mut self,
         automaton: &mut Automaton<'_>,
         (family, member): (usize, usize),
         width: usize,
-        label_limit: usize,
     ) -> usize {
         let family = &mut self.families[family];
         let member = &mut family.members[member];
@@ -332,13 +354,13 @@ impl Cheapest<'_> {
             ceiling: self.best.as_ref().map_or(NEVER, |&(_, _, total)| total),
             by_drift: self.by_drift,
             width,
-            label_limit,
+            effort_limit: usize::MAX,
         };
         let passage = walk.run(automaton, Beyond::new(NEVER - 1));
         member.keep_table(table);
         self.labels += passage.labels;
         self.best = passage.found.or(self.best.take());
-        passage.labels
+        passage.effort
     }
 
     fn finish(self, automaton: &Automaton<'_>) -> Result<Solution, Unsolved> {

@@ -26,7 +26,7 @@ use crate::topology::{Automaton, Descriptor, Goal, Shape, StateId};
 /// Nodes of a graph at which it is given up.
 const NODE_LIMIT: usize = 60_000;
 /// Additions in the pass that knows the drift, of which there are some 700 million in a second.
-const DRIFT_WORK_LIMIT: usize = 4_000_000_000;
+const DRIFT_WORK_LIMIT: usize = 10_000_000_000;
 /// The portals of classes that are told from the rest: the first that is affordable.
 const CLASS_SIZES: [usize; 4] = [64, 4, 2, 1];
 
@@ -88,6 +88,9 @@ impl Estimates {
                 Some(begin(piece, node, cost))
             });
             passes.learn_prices(problem, &starts.collect::<Vec<_>>());
+            if passes.only_leaves() {
+                self.learn_drift(problem, automaton, scope);
+            }
         } else if let Some(classes) = &mut self.classes {
             classes.learn_prices(problem, scope);
         } else {
@@ -106,7 +109,7 @@ impl Estimates {
         automaton: &mut Automaton<'_>,
         scope: &Scope,
     ) {
-        if self.exact.is_some() || automaton.goal().is_free() {
+        if self.drifting.is_none() && (self.exact.is_some() || automaton.goal().is_free()) {
             self.drifting = triples(problem, automaton, scope, true, NODE_LIMIT).and_then(|mut explored| {
                 let graph = Arc::new(std::mem::take(&mut explored.graph));
                 let table = estimate(problem, &graph, DRIFT_WORK_LIMIT, |cost, _| cost)?;
@@ -289,7 +292,10 @@ impl Classes {
         if !goal.is_one_component() {
             return None;
         }
-        CLASS_SIZES.iter().find_map(|&most_portals| {
+        // Where the holes make it too large, they are not read.
+        let without_holes = goal.holes.map(|_| Goal { holes: None, ..goal });
+        let goals = std::iter::once(goal).chain(without_holes);
+        goals.flat_map(|goal| CLASS_SIZES.map(|size| (goal, size))).find_map(|(goal, most_portals)| {
             let mut names = Names { most_portals, ..Names::default() };
             let (explored, passes) = Self::explore(problem, goal, scope, &mut names, Vec::new())?;
             let nodes = FxHashMap::default();

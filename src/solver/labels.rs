@@ -66,13 +66,23 @@ pub(super) struct Labels {
     sweep_at: usize,
     /// Labels made, also those that were dropped.
     pub(super) made: usize,
+    /// Pairs of labels that were compared.
+    compared: usize,
 }
+
+/// Pairs of labels that take as long to compare as a label takes to make.
+const COMPARISONS_PER_LABEL: usize = 32;
 
 impl Labels {
     /// No labels. With `by_drift`, runs that have drifted differently never stand for each other.
     pub(super) fn new(widest: u32, by_drift: bool) -> Self {
         let layers = (0..=widest).map(|_| Layer::default()).collect();
-        Self { store: Vec::new(), layers, length: 0, by_drift, sweep_at: FIRST_SWEEP, made: 0 }
+        Self { store: Vec::new(), layers, length: 0, by_drift, sweep_at: FIRST_SWEEP, made: 0, compared: 0 }
+    }
+
+    /// The work that was done, counted in labels.
+    pub(super) fn effort(&self) -> usize {
+        self.made + self.compared / COMPARISONS_PER_LABEL
     }
 
     pub(super) fn get(&self, at: u32) -> Label {
@@ -105,6 +115,7 @@ impl Labels {
         let (mut link, mut previous) = (*head, NONE);
         while link != NONE {
             let other = self.store[link as usize];
+            self.compared += 1;
             if other.weight <= weight {
                 if automaton.dominates(other.state, state) {
                     return None;

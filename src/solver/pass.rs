@@ -30,8 +30,8 @@ pub(super) struct Walk<'w> {
     pub(super) by_drift: bool,
     /// The most promising runs of each length are extended, and no others.
     pub(super) width: usize,
-    /// Labels at which the walk is given up.
-    pub(super) label_limit: usize,
+    /// Effort at which the walk is given up, in labels.
+    pub(super) effort_limit: usize,
 }
 
 /// What a walk came to.
@@ -44,6 +44,8 @@ pub(super) struct Passage {
     /// Estimates of the runs that were left out.
     pub(super) beyond: Beyond,
     pub(super) labels: usize,
+    /// The work that was done, counted in labels.
+    pub(super) effort: usize,
     /// Whether the walk was given up.
     pub(super) is_cut_short: bool,
 }
@@ -130,7 +132,8 @@ impl Walk<'_> {
         let widest = problem.widths.iter().copied().max().unwrap_or(1);
         let longest = *problem.window.end();
         let mut labels = Labels::new(widest, self.by_drift);
-        let mut passage = Passage { found: None, drifted_at: NEVER, beyond, labels: 0, is_cut_short: false };
+        let mut passage =
+            Passage { found: None, drifted_at: NEVER, beyond, labels: 0, effort: 0, is_cut_short: false };
         let mut best: Option<(Cost, Cost, u32)> = None;
         let mut repetition = problem.variety.map(Repetition::new);
         for &(piece, cost) in &self.scope.starts {
@@ -197,12 +200,12 @@ impl Walk<'_> {
             if let Some(repetition) = &mut repetition {
                 repetition.forget(&met);
             }
-            if labels.made > self.label_limit {
+            if labels.effort() > self.effort_limit {
                 passage.is_cut_short = true;
                 break;
             }
         }
-        passage.labels = labels.made;
+        (passage.labels, passage.effort) = (labels.made, labels.effort());
         passage.found = best.map(|(total, cost, at)| (labels.sequence(at), cost, total));
         passage
     }

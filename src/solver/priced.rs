@@ -20,7 +20,7 @@ const WORK_LIMIT: usize = 500_000_000;
 /// Additions in a pass that looks for a price. Longer runs are judged by shorter ones.
 const PRICING_WORK: usize = 20_000_000;
 /// Passes that look for a price, at most.
-const MOST_PASSES: usize = 10;
+const MOST_PASSES: usize = 8;
 /// The highest price of a unit of rise, in millionths: of a band that can only climb.
 const HIGHEST: i64 = 1_000_000_000;
 
@@ -53,6 +53,11 @@ impl Passes {
             let table = estimate(problem, &self.graph, WORK_LIMIT, |cost, rise| priced(price, cost, rise))?;
             Some(Priced { price, table })
         });
+    }
+
+    /// Whether even the highest price does not keep the cheapest runs in the band.
+    pub(super) fn only_leaves(&self) -> bool {
+        self.priced.as_ref().is_some_and(|priced| priced.price.abs() >= HIGHEST)
     }
 
     /// Makes the rows of `length` and of what a step leads to available.

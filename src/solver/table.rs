@@ -9,10 +9,10 @@
 //! is computed again when it is asked for. Walks that go along the length do that once for each block, so time stays
 //! linear in the length.
 
-use std::ops::RangeInclusive;
+use std::ops::{Range, RangeInclusive};
 use std::sync::Arc;
 
-use super::graph::Graph;
+use super::graph::{Edge, Graph};
 use super::problem::Cost;
 use super::recurrence::Recurrence;
 
@@ -76,6 +76,10 @@ pub(super) struct Table<W> {
     graph: Arc<Graph>,
     /// By edge.
     weights: Vec<W>,
+    /// By edge, how far before a row the node lies that it leads to.
+    back: Vec<u32>,
+    /// Whether some joins have to be completed in two ways at once.
+    has_pairs: bool,
     /// By node.
     stops: Vec<W>,
     window: RangeInclusive<u32>,
@@ -128,12 +132,17 @@ impl<W: Weigh> Table<W> {
         let affordable = (budget / (n.max(1) * size_of::<W>())).saturating_sub(widest);
         let block = affordable.max((layers * widest).isqrt()).max(widest).min(layers.max(widest));
         let weights = graph.all_edges().iter().map(|e| weigh(e.cost, e.rise)).collect();
+        let back = |e: &Edge| e.width * n as u32 - e.to;
+        let back = graph.all_edges().iter().map(back).collect();
+        let has_pairs = graph.all_edges().iter().any(|e| e.and_next);
         let stops = (0..n).map(|node| graph.stop(node).map_or(W::NONE, |cost| weigh(cost, 0))).collect();
         let most_rows = (patience / graph.work(1).max(1)).max(1);
         let rows = vec![W::NONE; widest * n];
         let mut table = Self {
             graph,
             weights,
+            back,
+            has_pairs,
             stops,
             window,
             widest,
@@ -277,34 +286,42 @@ impl<W: Weigh> Table<W> {
         if self.rows.len() < at + n {
             self.rows.resize(at + n, W::NONE);
         }
-        let (above, here) = self.rows.split_at_mut(at);
+        let mut rows = std::mem::take(&mut self.rows);
+        let (above, here) = rows.split_at_mut(at);
         let length = *self.window.end() as usize - (self.loaded * self.block + row);
         let may_stop = self.window.contains(&(length as u32));
-        let edges = self.graph.all_edges();
         for (node, value) in here[..n].iter_mut().enumerate() {
-            let mut sum = if may_stop { self.stops[node] } else { W::NONE };
-            let range = self.graph.edges_of(node);
-            let mut pending = None;
-            for (edge, &weight) in edges[range.clone()].iter().zip(&self.weights[range]) {
-                let rest = above[at - edge.width as usize * n + edge.to as usize];
-                let rest = match pending.take() {
-                    None => rest,
-                    Some(other) => rest.and(other),
-                };
-                if edge.and_next {
-                    pending = Some(rest);
-                } else if rest != W::NONE {
-                    sum = sum.or(rest.after(weight));
-                }
-            }
-            *value = sum;
+            let stop = if may_stop { self.stops[node] } else { W::NONE };
+            let edges = self.graph.edges_of(node);
+            let rest = |edge: usize| above[at - self.back[edge] as usize];
+            *value = match self.has_pairs {
+                false => edges.fold(stop, |sum, edge| sum.or(rest(edge).after(self.weights[edge]))),
+                true => self.sum_of_pairs(edges, stop, rest),
+            };
         }
+        self.rows = rows;
+    }
+
+    /// The same where some joins are completed in two ways at once.
+    fn sum_of_pairs(&self, edges: Range<usize>, stop: W, rest: impl Fn(usize) -> W) -> W {
+        let mut sum = stop;
+        let mut pending = None;
+        for edge in edges {
+            let rest = match pending.take() {
+                None => rest(edge),
+                Some(other) => rest(edge).and(other),
+            };
+            match self.graph.all_edges()[edge].and_next {
+                true => pending = Some(rest),
+                false => sum = sum.or(rest.after(self.weights[edge])),
+            }
+        }
+        sum
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::graph::Edge;
     use super::*;
     use proptest::prelude::*;
 

@@ -56,7 +56,6 @@ pub struct Automaton<'a> {
     ids: FxHashMap<State, StateId>,
     starts: FxHashMap<usize, Option<StateId>>,
     steps: FxHashMap<u64, Option<StateId>>,
-    comparisons: FxHashMap<u64, bool>,
 }
 
 impl<'a> Automaton<'a> {
@@ -70,7 +69,6 @@ impl<'a> Automaton<'a> {
             ids: FxHashMap::default(),
             starts: FxHashMap::default(),
             steps: FxHashMap::default(),
-            comparisons: FxHashMap::default(),
         }
     }
 
@@ -140,7 +138,7 @@ impl<'a> Automaton<'a> {
     pub fn bytes(&self) -> usize {
         let portals = self.states.first().map_or(0, |s| 2 * (s.left.len() + s.right.len()));
         let state = 2 * (size_of::<State>() + portals + 32) + size_of::<StateId>();
-        self.states.len() * state + (self.steps.capacity() + self.comparisons.capacity()) * 18
+        self.states.len() * state + self.steps.capacity() * 18
     }
 
     fn reads_partition(&self) -> bool {
@@ -231,7 +229,7 @@ impl<'a> Automaton<'a> {
 
     /// Whether a run in state `a` can be completed in every way in which one in `b` can, so that at no higher
     /// cost it can stand for it. Both have the same numbers of portals.
-    pub fn dominates(&mut self, a: StateId, b: StateId) -> bool {
+    pub fn dominates(&self, a: StateId, b: StateId) -> bool {
         if a == b {
             return true;
         }
@@ -251,8 +249,7 @@ impl<'a> Automaton<'a> {
         {
             return false;
         }
-        let compare = || is_coarser(of_coarse, of_fine);
-        *self.comparisons.entry(pair(coarse.0, fine.0)).or_insert_with(compare)
+        is_coarser(of_coarse, of_fine)
     }
 }
 
@@ -265,14 +262,25 @@ fn is_coarser(coarse: &State, fine: &State) -> bool {
     if coarse.left.len() != fine.left.len() || coarse.right.len() != fine.right.len() {
         return false;
     }
-    let labels = |s: &State| s.left.iter().chain(&s.right).copied().map(usize::from).collect::<Vec<_>>();
-    let (coarse, fine) = (labels(coarse), labels(fine));
-    let mut image = vec![usize::MAX; fine.len()];
-    fine.iter().zip(&coarse).all(|(&f, &c)| {
-        let unseen = image[f] == usize::MAX;
-        if unseen {
-            image[f] = c;
+    /// Classes for which nothing is allocated.
+    const FEW: usize = 64;
+    const UNSEEN: u16 = u16::MAX;
+    let (mut few, mut many) = ([UNSEEN; FEW], Vec::new());
+    let classes = fine.open as usize;
+    let image = match few.get_mut(..classes) {
+        Some(image) => image,
+        None => {
+            many.resize(classes, UNSEEN);
+            &mut many[..]
         }
-        image[f] == c
-    })
+    };
+    let mut is_image = |(&f, &c): (&u16, &u16)| {
+        let image = &mut image[usize::from(f)];
+        if *image == UNSEEN {
+            *image = c;
+        }
+        *image == c
+    };
+    fine.left.iter().zip(&coarse.left).all(&mut is_image)
+        && fine.right.iter().zip(&coarse.right).all(is_image)
 }
