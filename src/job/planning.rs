@@ -9,7 +9,6 @@ use super::plan::{Plan, PlanError, PlanOptions};
 use super::refusal;
 use super::stage::{Clock, Stage};
 use crate::domain::BandMap;
-use crate::pieces::Catalogue;
 use crate::topology::{Shape, Topology};
 
 /// The memory of a search for what bridges could do, in bytes, when they were not asked for.
@@ -104,7 +103,9 @@ fn strictly(
 }
 
 fn with_topology(cut: &Cut, options: &PlanOptions, plan: Plan) -> (Plan, Topology) {
-    let topology = topology_of(&cut.catalogue, &plan.sequence, options.shape);
+    // Independently of the automaton that led the search.
+    let pieces = plan.sequence.iter().map(|&piece| &cut.catalogue.descriptors()[piece]);
+    let topology = options.shape.topology(pieces).expect("a plan joins equal portals and leaves none");
     (plan, topology)
 }
 
@@ -114,17 +115,5 @@ fn refused(error: PlanError, cut: &Cut, options: &PlanOptions, hint: &str) -> Jo
         PlanError::Refused { refusal, bin_mm } => {
             JobError::Refused(refusal::message(&cut.catalogue, options, &refusal, bin_mm) + hint)
         }
-    }
-}
-
-/// The topology of a sequence by joining all descriptors, independently of the automaton that led the search.
-fn topology_of(catalogue: &Catalogue, sequence: &[usize], shape: Shape) -> Topology {
-    let mut pieces = sequence.iter().map(|&p| &catalogue.descriptors()[p]);
-    let first = pieces.next().expect("a plan has pieces").clone();
-    let run =
-        pieces.fold(first, |run, piece| run.join(piece).expect("a plan joins pieces with equal portals"));
-    match shape {
-        Shape::Open => run.finished().expect("a plan for an open curve leaves no portal open"),
-        Shape::Ring => run.close().expect("a plan for a ring closes"),
     }
 }

@@ -41,6 +41,8 @@ struct Frame {
 
 /// Word operations at which a pass is not begun: about a second.
 const WORK_LIMIT: usize = 1_000_000_000;
+/// Joins at which a pass of ranges is not begun: about half a second.
+const RANGES_WORK_LIMIT: usize = 100_000_000;
 
 /// The counts of all runs in the window; `None` when the pass would be too long.
 pub(super) fn counts(problem: &Problem<'_>, graph: &Connectivity, caps: Caps) -> Option<CountSet> {
@@ -91,10 +93,14 @@ pub(super) fn counts(problem: &Problem<'_>, graph: &Connectivity, caps: Caps) ->
 }
 
 /// From the fewest to the most components and holes of the runs in the window; `None` when there is no run. Both
-/// ends of a range can be had, each by itself and as far as the graph knows.
+/// ends of a range can be had, each by itself and as far as the graph knows. All there are when the pass would be
+/// too long.
 pub(super) fn ranges(problem: &Problem<'_>, graph: &Connectivity) -> Option<Ranges> {
     let longest = *problem.window.end() as usize;
     let n = graph.len();
+    if longest.saturating_mul(graph.joins()) > RANGES_WORK_LIMIT {
+        return Some(Ranges::ALL);
+    }
     let layers = problem.widths.iter().max().map_or(1, |&w| w as usize) + 1;
     let mut met: Vec<Option<Ranges>> = vec![None; layers * n];
     for &(node, closes) in graph.starts() {
@@ -127,6 +133,10 @@ pub(super) struct Ranges {
 }
 
 impl Ranges {
+    const ALL: Self = Self {
+        least: Counts { components: 0, holes: 0 },
+        most: Counts { components: u32::MAX, holes: u32::MAX },
+    };
     const EMPTY: Self =
         Self { least: Counts { components: 0, holes: 0 }, most: Counts { components: 0, holes: 0 } };
 

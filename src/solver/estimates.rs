@@ -18,9 +18,10 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap;
 
 use super::graph::{Explored, Joins, Scope, of_pieces};
+use super::lengths::has_level_run;
 use super::priced::{Passes, estimate};
 use super::problem::{Cost, Problem};
-use super::table::Table;
+use super::table::{NEVER, Table};
 use crate::topology::{Automaton, Descriptor, Goal, Shape, StateId};
 
 /// Nodes of a graph at which it is given up.
@@ -48,6 +49,8 @@ pub(super) enum Level {
 pub(super) struct Estimates {
     exact: Option<(Explored<(StateId, i32)>, Passes)>,
     classes: Option<Classes>,
+    /// Whether no run stays in the band.
+    is_never: bool,
     /// The same with the drift.
     drifting: Option<(Explored<(StateId, i32)>, Table<Cost>)>,
     /// Of the pieces alone, made when the drift is known and neither of the others is.
@@ -65,10 +68,11 @@ impl Estimates {
         if automaton.goal().is_free() {
             return;
         }
-        self.exact = triples(problem, automaton, scope, false, NODE_LIMIT).and_then(|mut explored| {
-            let passes = Passes::new(problem, std::mem::take(&mut explored.graph))?;
-            Some((explored, passes))
-        });
+        self.exact =
+            triples(problem, automaton, scope, false, problem.share(NODE_LIMIT)).and_then(|mut explored| {
+                let passes = Passes::new(problem, std::mem::take(&mut explored.graph))?;
+                Some((explored, passes))
+            });
         if self.exact.is_none() {
             self.classes = Classes::new(problem, automaton.goal(), scope);
         }
@@ -87,9 +91,11 @@ impl Estimates {
                 let node = explored.node(piece, (automaton.start(piece)?, 0))?;
                 Some(begin(piece, node, cost))
             });
-            passes.learn_prices(problem, &starts.collect::<Vec<_>>());
+            let starts: Vec<_> = starts.collect();
+            passes.learn_prices(problem, &starts);
             if passes.only_leaves() {
-                self.learn_drift(problem, automaton, scope);
+                let starts = starts.iter().map(|&(node, length, _)| (node, length));
+                self.is_never = has_level_run(problem, passes.graph(), starts) == Some(false);
             }
         } else if let Some(classes) = &mut self.classes {
             classes.learn_prices(problem, scope);
@@ -109,12 +115,14 @@ impl Estimates {
         automaton: &mut Automaton<'_>,
         scope: &Scope,
     ) {
-        if self.drifting.is_none() && (self.exact.is_some() || automaton.goal().is_free()) {
-            self.drifting = triples(problem, automaton, scope, true, NODE_LIMIT).and_then(|mut explored| {
-                let graph = Arc::new(std::mem::take(&mut explored.graph));
-                let table = estimate(problem, &graph, DRIFT_WORK_LIMIT, |cost, _| cost)?;
-                Some((explored, table))
-            });
+        if self.exact.is_some() || automaton.goal().is_free() {
+            self.drifting = triples(problem, automaton, scope, true, problem.share(NODE_LIMIT)).and_then(
+                |mut explored| {
+                    let graph = Arc::new(std::mem::take(&mut explored.graph));
+                    let table = estimate(problem, &graph, problem.share(DRIFT_WORK_LIMIT), |cost, _| cost)?;
+                    Some((explored, table))
+                },
+            );
         }
     }
 
@@ -125,7 +133,7 @@ impl Estimates {
 
     /// Makes the rows of `length` and of what a step leads to available.
     pub(super) fn load(&mut self, length: u32) {
-        let Self { exact, classes, pieces, drifting } = self;
+        let Self { exact, classes, pieces, drifting, .. } = self;
         if let Some((_, table)) = drifting {
             table.load(length);
         }
@@ -146,6 +154,9 @@ impl Estimates {
         run: (u32, usize, StateId, Option<i32>),
     ) -> Cost {
         let (length, piece, state, drift) = run;
+        if self.is_never {
+            return NEVER;
+        }
         let mut rest = 0;
         if let Some(passes) = &self.pieces {
             rest = passes.rest(problem, length, piece, drift);
@@ -331,7 +342,7 @@ impl Classes {
             scope.stop[piece].filter(|_| may_stop(goal, problem.shape, run, euler))
         };
 
-        let explored = Explored::new(problem, starts, NODE_LIMIT, expand);
+        let explored = Explored::new(problem, starts, problem.share(NODE_LIMIT), expand);
 
         let mut explored = explored?;
         let passes = Passes::new(problem, std::mem::take(&mut explored.graph))?;

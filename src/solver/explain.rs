@@ -1,16 +1,13 @@
 //! Why no sequence meets the constraints, and what can be had instead.
 //!
 //! The constraints are taken up one after the other, length and drift first, until no sequence is left: the one
-//! that was taken up last is named. Which counts can be had is read off a pass along the length, and the
-//! nearest of them is confirmed by a solution before it is named.
+//! that was taken up last is named. The nearest count that can be had is looked for by solving for ranges of
+//! counts, so there is a sequence with every count that is named.
 
-use super::connectivity::{Connectivity, Counts};
-use super::counts::{Caps, Ranges, counts, ranges};
-use super::family::scopes;
 use super::lengths::{lengths, stays_in_band};
 use super::problem::{Problem, Unsolved};
 use super::solve;
-use crate::topology::{Goal, Wanted};
+use crate::topology::{Goal, Topology, Wanted};
 
 /// Why a problem has no solution.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -47,6 +44,8 @@ pub enum Refusal {
 /// The constraint that cannot be met, for a problem that [`solve`] found infeasible. `longest` bins are looked
 /// at for sequences of other lengths.
 pub fn explain(problem: &Problem<'_>, goal: Goal, longest: u32) -> Refusal {
+    // What is not refused soon is taken to be possible: another constraint is the one to name.
+    let problem = &Problem { variety: None, memory_limit: ATTEMPT_BYTES, ..problem.clone() };
     let feasible = |goal: Goal| !matches!(solve(problem, goal), Err(Unsolved::Infeasible));
     let free = Goal::default();
     let lengths = lengths(problem, longest.max(*problem.window.end()));
@@ -95,62 +94,58 @@ impl Count {
         }
     }
 
-    fn of(self, counts: Counts) -> u32 {
+    fn of(self, topology: Topology) -> u32 {
         match self {
-            Self::Components => counts.components,
-            Self::Holes => counts.holes,
+            Self::Components => topology.components,
+            Self::Holes => topology.holes,
         }
     }
 }
 
-/// Joins that may be looked at, in all attempts to confirm a count: about a second at the very worst.
-const PATIENCE: usize = 100_000_000;
-/// Attempts to confirm a count, at most.
-const MOST_TRIES: usize = 400;
 /// Memory of one attempt, in bytes.
-const ATTEMPT_BYTES: usize = 32 << 20;
+const ATTEMPT_BYTES: usize = 16 << 20;
+/// Attempts on each side of the request.
+const MOST_TRIES: usize = 12;
 
 /// The count nearest to `wanted` with which a sequence exists, where `others` is the goal without it; `None` when
-/// it was not found out.
+/// none was found. Ranges that lie next to each other, each twice as long as the last, are tried until there is a
+/// sequence, and of that range always the half nearer to the request: what is named can be had, and is the
+/// nearest unless attempts ran out.
 fn nearest(problem: &Problem<'_>, others: Goal, wanted: Wanted, count: Count) -> Option<u32> {
-    let graphs = graphs(problem, others)?;
-    let mut candidates: Vec<u32> = Vec::new();
-    for graph in &graphs {
-        let Some(Ranges { least, most }) = ranges(problem, graph) else { continue };
-        let (least, most) = (count.of(least), count.of(most));
-        let up_to = Wanted::between(0, most)?;
-        match counts(problem, graph, Caps::of(count.wanted(others, up_to))) {
-            Some(set) => {
-                let given = others.components.map_or(0..=0, |c| c.least()..=c.most());
-                candidates.extend((least..=most).filter(|&n| match count {
-                    Count::Components => set.has(Counts { components: n, holes: 0 }),
-                    Count::Holes => given.clone().any(|c| set.has(Counts { components: c, holes: n })),
-                }));
+    let attempt = |a: u32, b: u32| {
+        let range = Wanted::between(a.min(b), a.max(b)).expect("the ends are in order");
+        let solution = solve(problem, count.wanted(others, range))?;
+        let pieces = solution.sequence.iter().map(|&piece| &problem.descriptors[piece]);
+        let topology = problem.shape.topology(pieces).expect("a solution adds up");
+        Ok::<u32, Unsolved>(count.of(topology))
+    };
+    // From the count next to the request away from it.
+    let side = |next: u32, is_above: bool| {
+        let away = |from: u32, by: u32| match is_above {
+            true => from.saturating_add(by),
+            false => from.saturating_sub(by),
+        };
+        let (mut near, mut length, mut far, mut found) = (next, 1, None, None);
+        for _ in 0..MOST_TRIES {
+            let reach = far.map_or(away(near, length - 1), |far| near.midpoint(far));
+            match attempt(near, reach) {
+                Ok(n) => {
+                    found = Some(n);
+                    far = Some(if is_above { n.saturating_sub(1) } else { n + 1 });
+                    if n == near {
+                        break;
+                    }
+                }
+                Err(Unsolved::Infeasible) if Some(reach) != far && reach != away(reach, 1) => {
+                    near = away(reach, 1);
+                    length *= 2;
+                }
+                Err(_) => break,
             }
-            // With one count alone the ends of its range can be had.
-            None if wanted.most() <= least && others.components.is_none() => candidates.push(least),
-            None if wanted.least() >= most && others.components.is_none() => candidates.push(most),
-            None => return None,
         }
-    }
-    candidates.sort_unstable_by_key(|&n| (wanted.distance(n), n));
-    candidates.dedup();
-    let joins: usize = graphs.iter().map(Connectivity::joins).sum();
-    let work = joins.saturating_mul(*problem.window.end() as usize).max(1);
-    let tries = (PATIENCE / work).clamp(2, MOST_TRIES);
-    let small = Problem { variety: None, memory_limit: ATTEMPT_BYTES, ..problem.clone() };
-    for n in candidates.into_iter().filter(|&n| !wanted.contains(n)).take(tries) {
-        match solve(&small, count.wanted(others, Wanted::exactly(n))) {
-            Ok(_) => return Some(n),
-            Err(Unsolved::Infeasible) => {}
-            Err(Unsolved::TooLarge { .. }) => return None,
-        }
-    }
-    None
-}
-
-/// The graphs of all runs that a goal allows: one for open runs, one for each narrowest cut of rings. `None` when
-/// one is too large.
-fn graphs(problem: &Problem<'_>, goal: Goal) -> Option<Vec<Connectivity>> {
-    scopes(problem, goal.closed_pattern).iter().map(|scope| Connectivity::new(problem, goal, scope)).collect()
+        found
+    };
+    let below = wanted.least().checked_sub(1).and_then(|next| side(next, false));
+    let above = wanted.most().checked_add(1).and_then(|next| side(next, true));
+    [below, above].into_iter().flatten().min_by_key(|&n| (wanted.distance(n), n))
 }

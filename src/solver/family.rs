@@ -183,8 +183,12 @@ impl Member {
 }
 
 fn piece_table(problem: &Problem<'_>, scope: &Scope) -> Table<Cost> {
-    let mut table =
-        Table::new(of_pieces(problem, scope).into(), problem.window.clone(), TABLE_BUDGET / 4, |c, _| c);
+    let mut table = Table::new(
+        of_pieces(problem, scope).into(),
+        problem.window.clone(),
+        problem.share(TABLE_BUDGET / 4),
+        |c, _| c,
+    );
     table.load(0);
     table
 }

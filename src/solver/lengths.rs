@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use super::family::families;
-use super::graph::Scope;
+use super::graph::{Graph, of_pieces};
 use super::problem::Problem;
 use crate::topology::Shape;
 
@@ -59,53 +59,63 @@ const WIDEST: i32 = 4096;
 /// Whether some sequence of an accepted length stays in the band, whatever its topology; `None` when that was not
 /// found out.
 pub(super) fn stays_in_band(problem: &Problem<'_>) -> Option<bool> {
-    let longest = *problem.window.end() as usize;
+    let families = families(problem, false);
+    let mut scopes = families.iter().flat_map(|family| &family.members).map(|member| &member.scope);
+    let mut is_known = true;
+    let found = scopes.any(|scope| {
+        let starts = scope.starts.iter().map(|&(piece, _)| (piece, problem.widths[piece]));
+        let found = has_level_run(problem, &of_pieces(problem, scope), starts);
+        is_known &= found.is_some();
+        found == Some(true)
+    });
+    (found || is_known).then_some(found)
+}
+
+/// Whether some run of `graph` of an accepted length, from `starts` (node and length), stays in the band; `None`
+/// when that was not found out.
+pub(super) fn has_level_run(
+    problem: &Problem<'_>,
+    graph: &Graph,
+    starts: impl Iterator<Item = (usize, u32)>,
+) -> Option<bool> {
     if problem.drift_limit > WIDEST {
         return None;
     }
-    Some(
-        families(problem, false)
-            .iter()
-            .any(|family| family.members.iter().any(|member| has_level_run(problem, &member.scope, longest))),
-    )
-}
-
-fn has_level_run(problem: &Problem<'_>, scope: &Scope, longest: usize) -> bool {
-    let pieces = problem.pieces();
+    let (longest, n) = (*problem.window.end() as usize, graph.len());
     let limit = problem.drift_limit.max(0) as usize;
     let bits = 2 * limit + 1;
     let words = bits.div_ceil(64);
     // An odd number of bits never fills its last word.
     let last = !(u64::MAX << (bits % 64));
     let layers = problem.widths.iter().max().map_or(1, |&w| w as usize) + 1;
-    let mut drifts = vec![0u64; layers * pieces * words];
-    let place = |length: usize, piece: usize| (length % layers * pieces + piece) * words;
-    for &(first, _) in &scope.starts {
-        drifts[place(problem.widths[first] as usize, first) + limit / 64] |= 1 << (limit % 64);
+    let mut drifts = vec![0u64; layers * n * words];
+    let place = |length: usize, node: usize| (length % layers * n + node) * words;
+    for (node, length) in starts.filter(|&(_, length)| length as usize <= longest) {
+        drifts[place(length as usize, node) + limit / 64] |= 1 << (limit % 64);
     }
     let mut here = vec![0u64; words];
     for length in 1..=longest {
-        for piece in 0..pieces {
-            let met = &mut drifts[place(length, piece)..][..words];
+        for node in 0..n {
+            let met = &mut drifts[place(length, node)..][..words];
             if met.iter().all(|&w| w == 0) {
                 continue;
             }
-            if scope.stop[piece].is_some() && problem.window.contains(&(length as u32)) {
-                return true;
+            if graph.stop(node).is_some() && problem.window.contains(&(length as u32)) {
+                return Some(true);
             }
             here.copy_from_slice(met);
             met.fill(0);
-            for step in problem.steps[piece].iter().filter(|s| scope.allowed[s.to]) {
-                let longer = length + problem.widths[step.to] as usize;
+            for edge in &graph.all_edges()[graph.edges_of(node)] {
+                let longer = length + edge.width as usize;
                 if longer <= longest {
-                    let to = &mut drifts[place(longer, step.to)..][..words];
-                    add_moved(to, &here, step.rise);
+                    let to = &mut drifts[place(longer, edge.to as usize)..][..words];
+                    add_moved(to, &here, edge.rise);
                     to[words - 1] &= last;
                 }
             }
         }
     }
-    false
+    Some(false)
 }
 
 /// Adds to `set` what `other` holds, moved by `by`; what leaves at either end is lost.

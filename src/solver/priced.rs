@@ -42,7 +42,7 @@ impl Passes {
     /// The pass over `graph` that does not know the drift; `None` when it would take too long to say anything.
     pub(super) fn new(problem: &Problem<'_>, graph: Graph) -> Option<Self> {
         let graph = Arc::new(graph);
-        let plain = estimate(problem, &graph, WORK_LIMIT, |cost, _| cost)?;
+        let plain = estimate(problem, &graph, problem.share(WORK_LIMIT), |cost, _| cost)?;
         Some(Self { graph, plain, priced: None })
     }
 
@@ -50,7 +50,9 @@ impl Passes {
     /// where the cheapest runs end in the band anyway.
     pub(super) fn learn_prices(&mut self, problem: &Problem<'_>, starts: &[(usize, u32, Cost)]) {
         self.priced = price(problem, &self.graph, starts).and_then(|price| {
-            let table = estimate(problem, &self.graph, WORK_LIMIT, |cost, rise| priced(price, cost, rise))?;
+            let table = estimate(problem, &self.graph, problem.share(WORK_LIMIT), |cost, rise| {
+                priced(price, cost, rise)
+            })?;
             Some(Priced { price, table })
         });
     }
@@ -58,6 +60,11 @@ impl Passes {
     /// Whether even the highest price does not keep the cheapest runs in the band.
     pub(super) fn only_leaves(&self) -> bool {
         self.priced.as_ref().is_some_and(|priced| priced.price.abs() >= HIGHEST)
+    }
+
+    /// The graph.
+    pub(super) fn graph(&self) -> &Graph {
+        &self.graph
     }
 
     /// Makes the rows of `length` and of what a step leads to available.
@@ -93,7 +100,7 @@ pub(super) fn estimate<W: Weigh>(
     patience: usize,
     weigh: impl Fn(Cost, i32) -> W,
 ) -> Option<Table<W>> {
-    Table::within(Arc::clone(graph), problem.window.clone(), TABLE_BUDGET, patience, weigh)
+    Table::within(Arc::clone(graph), problem.window.clone(), problem.share(TABLE_BUDGET), patience, weigh)
 }
 
 /// The cost of a step with its rise paid for.

@@ -82,6 +82,13 @@ impl Problem<'_> {
         self.widths.len()
     }
 
+    /// `most` of something that grows with the memory a search takes, or less where little memory is allowed.
+    pub(super) fn share(&self, most: usize) -> usize {
+        /// Memory with which everything is made as large as is worth while.
+        const AMPLE: usize = 256 << 20;
+        (most as f64 * (self.memory_limit as f64 / AMPLE as f64).min(1.0)) as usize
+    }
+
     /// The cost of a sequence by the problem's own tables; `None` if a join is not in them.
     pub fn cost_of(&self, sequence: &[usize]) -> Option<Cost> {
         let step = |a: usize, b: usize| self.steps[a].iter().find(|s| s.to == b).map(|s| s.cost);

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
-use super::descriptor::Topology;
+use super::descriptor::{Descriptor, Topology};
 
 /// Whether the run of pieces has two ends or closes on itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -14,6 +14,20 @@ pub enum Shape {
     Open,
     /// The last piece is glued to the first.
     Ring,
+}
+
+impl Shape {
+    /// What a sequence of this shape adds up to, by joining all its descriptors; `None` when portal numbers do not
+    /// match, an open run has portals left, or there is no descriptor.
+    pub fn topology<'d>(self, descriptors: impl IntoIterator<Item = &'d Descriptor>) -> Option<Topology> {
+        let mut descriptors = descriptors.into_iter();
+        let first = descriptors.next()?.clone();
+        let run = descriptors.try_fold(first, |run, next| run.join(next)).ok()?;
+        match self {
+            Self::Open => run.finished(),
+            Self::Ring => run.close().ok(),
+        }
+    }
 }
 
 /// The numbers that are wanted of something: all from the least to the most, both included.
