@@ -14,7 +14,8 @@ use super::output::{Output, Target, persist};
 use super::plan::Plan;
 use super::rect_builder::RectJob;
 use super::rect_report::{DirectionReport, RectReport};
-use super::rect_search::{Found, Made, search};
+use super::rect_rows::Made;
+use super::rect_search::{Found, search};
 use super::stage::{Clock, Stage};
 use crate::planar::Region;
 use crate::topology::{Topology, Wanted};
@@ -80,11 +81,12 @@ impl Rect {
 }
 
 fn describe(job: &RectJob, found: &Found) -> RectReport {
-    let Found { first, second, cuts_mm: [first_cuts, second_cuts], exemplar, .. } = found;
+    let Found { first, second, cuts_mm, exemplar, .. } = found;
+    let first_report = &first.band.report;
     let options = &job.band.options;
     let made = &second.band.report;
     // Notes on the exemplar itself come with the second pass too.
-    let own = first.report.notes.iter().filter(|note| !exemplar.notes().contains(note));
+    let own = first_report.notes.iter().filter(|note| !exemplar.notes().contains(note));
     let notes = own.map(|note| format!("first pass: {note}")).collect();
     RectReport {
         schema_version: 1,
@@ -100,9 +102,8 @@ fn describe(job: &RectJob, found: &Found) -> RectReport {
         kept_mm: options.kept.iter().map(|k| [k.from_mm, k.to_mm]).collect(),
         thickness_mm: options.thickness_mm,
         chord_mm: job.band.tolerances.chord_mm(),
-        along_u: DirectionReport::new(&first.report, first.report.width_mm, first_cuts.clone()),
-        along_v: DirectionReport::new(made, job.size.width_mm(), second_cuts.clone()),
-        mirrored: found.mirrored,
+        along_u: DirectionReport::new(first_report, first_report.width_mm, first.cuts_mm.clone()),
+        along_v: DirectionReport::new(made, job.size.width_mm(), cuts_mm.clone()),
         tiling: second.tiling,
         bridges: made.bridges.clone(),
         attempts: found.attempts.clone(),

@@ -9,7 +9,7 @@ use super::builder::BandJob;
 use super::certificate::Certificate;
 use super::error::JobError;
 use super::json;
-use super::plan::Plan;
+use super::rect_rows::Way;
 use super::report::{BandReport, DroppedCutReport, InputReport, SeamReport, StageTime, StitchReport};
 use crate::topology::Wanted;
 use crate::verify::{Narrowest, Tiling};
@@ -101,8 +101,12 @@ pub struct Attempt {
     pub strip_holes: Option<u32>,
     /// The seed of the strip.
     pub strip_seed: Option<u64>,
-    /// Whether the mirror image of the strip stood beside it; null when there was no strip.
-    pub mirrored: Option<bool>,
+    /// The greatest misfit that joins between rows were allowed: 1 is a strand that is joined to one beside it, by the
+    /// width of the narrower, or to one twice as wide, or turns by 90 degrees. Null if any was, or if there was no
+    /// strip.
+    pub allowed_misfit: Option<f64>,
+    /// The greatest misfit of the joins between rows, if there was a sequence.
+    pub misfit: Option<f64>,
     /// The cost of the second pass, if it found a sequence.
     pub cost: Option<f64>,
     /// `planned`, or why it failed.
@@ -121,20 +125,22 @@ impl Attempt {
             strip_components: options.goal.components.map(Wanted::most),
             strip_holes: options.goal.holes.map(Wanted::most),
             strip_seed: options.seed,
-            mirrored: None,
+            allowed_misfit: None,
+            misfit: None,
             cost: None,
             outcome,
         }
     }
 
     /// A second pass.
-    pub(super) fn second(strip: &Band, mirrored: bool, plan: Result<&Plan, &JobError>) -> Self {
+    pub(super) fn second(strip: &Band, allowed_misfit: f64, way: Result<&Way, &JobError>) -> Self {
         Self {
-            mirrored: Some(mirrored),
-            cost: plan.ok().map(|plan| plan.cost),
+            allowed_misfit: Some(allowed_misfit).filter(|m| m.is_finite()),
+            misfit: way.ok().map(|way| way.misfit),
+            cost: way.ok().map(|way| way.plan.cost),
             ..Self::first(
                 &strip.job,
-                plan.err().map_or_else(|| Self::PLANNED.to_owned(), ToString::to_string),
+                way.err().map_or_else(|| Self::PLANNED.to_owned(), ToString::to_string),
             )
         }
     }
@@ -173,8 +179,6 @@ pub struct RectReport {
     pub along_u: DirectionReport,
     /// The second pass: rows of the strip along v, downwards.
     pub along_v: DirectionReport,
-    /// Whether rows were also taken from the mirror image of the strip, whose pieces come after its own.
-    pub mirrored: bool,
     /// The tiling that copies make, counted on the drawing; null when no tile was asked for.
     pub tiling: Option<Tiling>,
     /// The bridges, when the ornament alone could not give what was asked for; then the counts are with them.

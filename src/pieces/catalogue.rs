@@ -7,6 +7,7 @@ use thiserror::Error;
 
 use super::cut_up::cut_up;
 use super::mirror::mirrored;
+use super::misfit::misfit;
 use super::piece::{Endpoint, Piece};
 use crate::planar::Region;
 use crate::reeb::Cut;
@@ -24,6 +25,11 @@ pub struct CostWeights {
     /// The cost of a join that moves the run up or down by the exemplar's height; it grows with the square. The
     /// paper has no such term and leaves bands that climb to the fit; 0 is the paper.
     pub rise: f64,
+    /// The cost of a jump whose worst strand has the misfit 1 (see [`Join::misfit`]); it grows with the square. The
+    /// paper has no such term; 0 is the paper.
+    pub misfit: f64,
+    /// Jumps with a greater misfit are left out. The paper leaves none out: infinite.
+    pub worst_misfit: f64,
     /// How many successors of each piece are kept: the cheapest, and always the exemplar's own next piece. With
     /// mirrored pieces, so many of its own orientation and so many of the other, so that none is lost to them.
     pub successors: usize,
@@ -43,7 +49,7 @@ pub struct CostWeightsError {
 
 impl Default for CostWeights {
     fn default() -> Self {
-        Self { alpha: 0.8, jump: 1.0, rise: 50.0, successors: 16 }
+        Self { alpha: 0.8, jump: 1.0, rise: 50.0, misfit: 0.0, worst_misfit: f64::INFINITY, successors: 16 }
     }
 }
 
@@ -68,11 +74,14 @@ impl CostWeights {
 pub struct Join {
     /// The successor.
     pub to: usize,
-    /// D(i, j) of Zhou 2014 §3.6.1, what the rise costs, and λ if this is a jump.
+    /// D(i, j) of Zhou 2014 §3.6.1, what the rise costs, and λ and what the misfit costs if this is a jump.
     pub cost: f64,
     /// The vertical offset τ that aligns the successor best, in millimetres: added to the offset of the piece
     /// it gives the successor's.
     pub rise_mm: f64,
+    /// How badly the worst strand fits: 0 where all go straight on, and 1 where one lies beside the other by the width
+    /// of the narrower, is twice as wide, or turns by 90 degrees.
+    pub misfit: f64,
     /// Whether the successor is the exemplar's own next piece.
     pub is_natural: bool,
 }
@@ -240,10 +249,13 @@ impl Catalogue {
             };
             let jump = weights.jump * jumps;
             let rise = weights.rise * (rise_mm / scale.height_mm).powi(2);
-            Join { to, cost: cost + jump + rise, rise_mm, is_natural }
+            let misfit = if is_natural { 0.0 } else { misfit(right, &pieces[to].left) };
+            let unfit = weights.misfit * misfit.powi(2);
+            Join { to, cost: cost + jump + rise + unfit, rise_mm, misfit, is_natural }
         };
+        let is_allowed = |join: &Join| join.misfit <= weights.worst_misfit;
         let of_one_orientation = |range: Range<usize>| {
-            let mut joins: Vec<Join> = range.filter(fits).map(join).collect();
+            let mut joins: Vec<Join> = range.filter(fits).map(join).filter(is_allowed).collect();
             joins.sort_by(Join::order);
             let natural = joins.iter().position(|j| j.is_natural);
             if let Some(late) = natural.filter(|&at| at >= weights.successors) {

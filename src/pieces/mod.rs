@@ -11,6 +11,7 @@
 mod catalogue;
 mod cut_up;
 mod mirror;
+mod misfit;
 mod piece;
 
 pub use catalogue::{Catalogue, CostWeights, CostWeightsError, Join, Origin};

@@ -1,0 +1,139 @@
+//! The first pass of a rectangle: strips as long as it is wide.
+//!
+//! All strips of one height come from the exemplar at that height, and differ by what they were asked for. Each is
+//! made when it is first wanted and then kept, as several second passes may be tried over it; one that follows
+//! the plan of another is left out. Excluded: which strip is wanted, which is for [`super::rect_search`].
+
+use super::band::Band;
+use super::builder::BandJob;
+use super::cut::{Cut, read_exemplar, slice_region};
+use super::error::JobError;
+use super::planning::plan_run;
+use super::rect_builder::RectJob;
+use super::rect_tile::{join_own_copies, opened};
+use super::stage::{Clock, Stage};
+use crate::domain::{BandMap, PlanarCurve};
+use crate::exemplar::Exemplar;
+use crate::fit::Sides;
+use crate::planar::{Region, Tolerances};
+use crate::topology::Goal;
+
+/// The memory that the search for a strip may take, in bytes: one that has no sequence soon is given up.
+const STRIP_MEMORY_LIMIT: usize = 128 << 20;
+/// The first pass may use this part of the chord error, so that both stay within it.
+const FIRST_CHORD_SHARE: f64 = 0.5;
+
+/// A strip with the cuts of the exemplar that it was made of.
+#[derive(Debug, Clone)]
+pub(super) struct Strip {
+    pub(super) band: Band,
+    /// In millimetres.
+    pub(super) cuts_mm: Vec<f64>,
+}
+
+/// What a strip is asked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Wish {
+    pub(super) goal: Goal,
+    pub(super) seed: Option<u64>,
+}
+
+/// The strips of one height.
+pub(super) struct Strips {
+    job: BandJob,
+    pub(super) exemplar: Exemplar,
+    tile: bool,
+    map_width_mm: f64,
+    known: Vec<(Wish, Option<Strip>)>,
+    refused: Vec<Goal>,
+}
+
+impl Strips {
+    /// None yet.
+    pub(super) fn new(job: &RectJob, height_mm: f64, clock: &mut Clock<'_>) -> Result<Self, JobError> {
+        let mut options = job.band.options.clone();
+        options.width_mm = Some(height_mm);
+        let whole = &job.band.tolerances;
+        let tolerances = Tolerances::new(
+            whole.chord_mm() * FIRST_CHORD_SHARE,
+            whole.min_feature_mm(),
+            whole.min_gap_mm(),
+        )?;
+        let band =
+            BandJob { options, tolerances, variety: job.band.variety, memory_limit: STRIP_MEMORY_LIMIT };
+        let exemplar = clock.time(Stage::Read, || read_exemplar(&band))?;
+        Ok(Self {
+            job: band,
+            exemplar,
+            tile: job.tile,
+            map_width_mm: job.size.width_mm(),
+            known: Vec::new(),
+            refused: Vec::new(),
+        })
+    }
+
+    /// The job of a strip.
+    pub(super) fn job(&self, wish: Wish) -> BandJob {
+        let mut job = self.job.clone();
+        job.options.goal = wish.goal;
+        job.options.seed = wish.seed;
+        job
+    }
+
+    /// The strip that was wished for; `None` if there is none, or if it is the same as one of another wish.
+    ///
+    /// # Errors
+    /// [`JobError`] when it cannot be made, the first time that it is wished for.
+    pub(super) fn get(&mut self, wish: Wish, clock: &mut Clock<'_>) -> Result<Option<Strip>, JobError> {
+        if let Some((_, strip)) = self.known.iter().find(|(known, _)| *known == wish) {
+            return Ok(strip.clone());
+        }
+        // A seed changes what is cheap, not what can be.
+        if self.refused.contains(&wish.goal) {
+            return Ok(None);
+        }
+        match self.made(&self.job(wish), clock) {
+            Ok(strip) => {
+                self.known.push((wish, strip.clone()));
+                Ok(strip)
+            }
+            Err(error) => {
+                self.refused.push(wish.goal);
+                Err(error)
+            }
+        }
+    }
+
+    fn made(&self, job: &BandJob, clock: &mut Clock<'_>) -> Result<Option<Strip>, JobError> {
+        let mut slice = |job: &BandJob, region: &Region| {
+            clock.time(Stage::Slice, || slice_region(job, self.exemplar.clone(), region))
+        };
+        let mut cut = slice(job, self.exemplar.region())?;
+        if self.tile {
+            let (region, kept) = opened(self.exemplar.region(), &cut.slicing.cuts, 0, &job.options.kept)?;
+            let mut job = job.clone();
+            job.options.kept = kept;
+            cut = slice(&job, &region)?;
+            join_own_copies(&mut cut, false);
+        }
+        cut.sides = Sides::Filled;
+        let map = flat_map(self.map_width_mm, cut.height_mm)?;
+        let (plan, planned) = plan_run(job, &mut cut, &map, clock)?;
+        let mut strips = self.known.iter().filter_map(|(_, strip)| strip.as_ref());
+        if strips.any(|strip| strip.band.plan.sequence == plan.sequence) {
+            return Ok(None);
+        }
+        let band = Band::made(job, &cut, plan, planned, &map, None, clock)?;
+        Ok(Some(Strip { band, cuts_mm: cuts_mm(&cut) }))
+    }
+}
+
+/// The map of a straight band.
+pub(super) fn flat_map(length_mm: f64, height_mm: f64) -> Result<BandMap, JobError> {
+    Ok(BandMap::new(PlanarCurve::line(length_mm)?, -height_mm / 2.0, height_mm / 2.0)?)
+}
+
+/// Where a region was cut, in millimetres.
+pub(super) fn cuts_mm(cut: &Cut) -> Vec<f64> {
+    cut.slicing.cuts.iter().map(|c| cut.region().grid().mm(c.x)).collect()
+}
