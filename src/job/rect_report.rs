@@ -102,7 +102,7 @@ pub struct Attempt {
     /// The seed of the strip.
     pub strip_seed: Option<u64>,
     /// The greatest misfit that joins between rows were allowed: 1 is a strand that is joined to one beside it, by the
-    /// width of the narrower, or to one twice as wide, or turns by 90 degrees. Null if any was, or if there was no
+    /// width of the narrower, or to one twice as wide, or turns back. Null if any was, or if there was no
     /// strip.
     pub allowed_misfit: Option<f64>,
     /// The greatest misfit of the joins between rows, if there was a sequence.

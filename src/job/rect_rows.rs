@@ -16,7 +16,7 @@ use super::part::Part;
 use super::plan::Plan;
 use super::planning::plan_run;
 use super::rect_builder::RectJob;
-use super::rect_strip::Strip;
+use super::rect_strip::{Strip, check_stretch};
 use super::rect_tile::{clear_sides, join_own_copies, opened};
 use super::stage::{Clock, Stage};
 use crate::domain::{BandMap, CurveSpec};
@@ -35,14 +35,14 @@ const RISE_FACTOR: f64 = 200.0;
 /// What a jump of the misfit 1 costs in the second pass, in λ. Less, and slivers are worth a row more; more, and rows
 /// are cut to pieces at the few places where all fits.
 const MISFIT_COST: f64 = 10.0;
+/// What a jump costs in the second pass that hangs by a hair, in λ. Less, and rows hang by the tips of leaves; more, and
+/// they are cut through the middle, where all is ink.
+const WEAKNESS_COST: f64 = 10.0;
 /// Successors that are weighed of each row, of each orientation. A row's own reflection is among the cheapest; more
 /// make the search longer and the pattern no better.
 const SUCCESSORS: usize = 4;
 /// The memory that the search for rows may take, in bytes: a way that has no sequence soon is given up for the next.
 const ROWS_MEMORY_LIMIT: usize = 16 << 20;
-/// Rows may be pressed or stretched sideways by this much to fill the width: as a band along its length.
-const STRETCH: std::ops::RangeInclusive<f64> = 0.7..=1.3;
-
 /// A second pass that has a plan.
 pub(super) struct Way {
     job: BandJob,
@@ -95,6 +95,7 @@ impl Way {
         options.weights.jump *= JUMP_FACTOR;
         options.weights.rise *= RISE_FACTOR;
         options.weights.misfit = MISFIT_COST;
+        options.weights.weakness = std::env::var("OW_WEAK").map_or(WEAKNESS_COST, |v| v.parse().unwrap());
         options.weights.worst_misfit = wish.worst_misfit;
         options.weights.successors = SUCCESSORS;
         let job = BandJob { options, memory_limit: ROWS_MEMORY_LIMIT, ..job.band.clone() };
@@ -133,12 +134,7 @@ impl Way {
             job.options.goal = goal;
         }
         let mut band = Band::made(&job, &self.cut, self.plan.clone(), self.planned, map, None, clock)?;
-        if !STRETCH.contains(&band.report.squash) {
-            return Err(JobError::Refused(format!(
-                "the rows would have to be pressed or stretched sideways by {:.0} % to fill the width",
-                (band.report.squash - 1.0).abs() * 100.0
-            )));
-        }
+        check_stretch(&band, "the rows", "sideways to fill the width")?;
         band.part = turned_back(&band.part);
         if let Some((width_mm, _)) = bridges {
             clock.time(Stage::Bridge, || band.lay_bridges(width_mm, None))?;

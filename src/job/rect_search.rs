@@ -138,7 +138,13 @@ impl Search<'_, '_> {
             None if goal != self.job.band.options.goal => vec![None],
             None => std::iter::once(None).chain(SEEDS.map(Some)).collect(),
         };
-        let wishes = seeds.into_iter().flat_map(|seed| first_goals(goal).into_iter().map(move |g| Wish { goal: g, seed }));
+        let mut wishes = Vec::new();
+        for seed in seeds {
+            for goal in first_goals(goal) {
+                // What the exemplar has as it is goes before what a mirror makes of it.
+                wishes.extend([false, true].map(|mirror| Wish { goal, seed, worst_misfit, mirror }));
+            }
+        }
         for wish in wishes {
             if self.attempts.len() >= self.allowed {
                 return None;

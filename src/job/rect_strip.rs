@@ -20,6 +20,10 @@ use crate::topology::Goal;
 
 /// The memory that the search for a strip may take, in bytes: one that has no sequence soon is given up.
 const STRIP_MEMORY_LIMIT: usize = 128 << 20;
+/// What a jump of the misfit 1 costs in the first pass, in λ: as in the second, as much as the jump itself.
+const MISFIT_COST: f64 = 1.0;
+/// Bands may be pressed or stretched across by this much to fill the height or the width: as along their length.
+const STRETCH: std::ops::RangeInclusive<f64> = 0.7..=1.3;
 /// The first pass may use this part of the chord error, so that both stay within it.
 const FIRST_CHORD_SHARE: f64 = 0.5;
 
@@ -36,6 +40,18 @@ pub(super) struct Strip {
 pub(super) struct Wish {
     pub(super) goal: Goal,
     pub(super) seed: Option<u64>,
+    /// The greatest misfit of a join.
+    pub(super) worst_misfit: f64,
+    /// Whether pieces may be used left for right.
+    pub(super) mirror: bool,
+}
+
+impl Wish {
+    /// Whether what cannot be for `other` cannot be for this one: a seed changes what is cheap, not what can be.
+    fn is_within(&self, other: &Self) -> bool {
+        let at_most = self.worst_misfit <= other.worst_misfit && self.mirror <= other.mirror;
+        at_most && self.goal == other.goal
+    }
 }
 
 /// The strips of one height.
@@ -45,7 +61,7 @@ pub(super) struct Strips {
     tile: bool,
     map_width_mm: f64,
     known: Vec<(Wish, Option<Strip>)>,
-    refused: Vec<Goal>,
+    refused: Vec<Wish>,
 }
 
 impl Strips {
@@ -77,6 +93,9 @@ impl Strips {
         let mut job = self.job.clone();
         job.options.goal = wish.goal;
         job.options.seed = wish.seed;
+        job.options.mirror |= wish.mirror;
+        job.options.weights.misfit = MISFIT_COST;
+        job.options.weights.worst_misfit = wish.worst_misfit;
         job
     }
 
@@ -88,8 +107,7 @@ impl Strips {
         if let Some((_, strip)) = self.known.iter().find(|(known, _)| *known == wish) {
             return Ok(strip.clone());
         }
-        // A seed changes what is cheap, not what can be.
-        if self.refused.contains(&wish.goal) {
+        if self.refused.iter().any(|refused| wish.is_within(refused)) {
             return Ok(None);
         }
         match self.made(&self.job(wish), clock) {
@@ -98,7 +116,8 @@ impl Strips {
                 Ok(strip)
             }
             Err(error) => {
-                self.refused.push(wish.goal);
+                self.refused.push(wish);
+                self.known.push((wish, None));
                 Err(error)
             }
         }
@@ -124,8 +143,19 @@ impl Strips {
             return Ok(None);
         }
         let band = Band::made(job, &cut, plan, planned, &map, None, clock)?;
+        check_stretch(&band, "the strip", "to be as high as the exemplar")?;
         Ok(Some(Strip { band, cuts_mm: cuts_mm(&cut) }))
     }
+}
+
+/// Refuses a band that is much stretched across.
+pub(super) fn check_stretch(band: &Band, what: &str, why: &str) -> Result<(), JobError> {
+    let squash = band.report.squash;
+    if STRETCH.contains(&squash) {
+        return Ok(());
+    }
+    let per_cent = (squash - 1.0).abs() * 100.0;
+    Err(JobError::Refused(format!("{what} would have to be pressed or stretched by {per_cent:.0} % {why}")))
 }
 
 /// The map of a straight band.

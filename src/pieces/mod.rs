@@ -11,8 +11,8 @@
 mod catalogue;
 mod cut_up;
 mod mirror;
-mod misfit;
 mod piece;
+mod seam;
 
 pub use catalogue::{Catalogue, CostWeights, CostWeightsError, Join, Origin};
 pub use piece::{Chain, End, Endpoint, Piece};
