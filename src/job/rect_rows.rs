@@ -16,7 +16,7 @@ use super::part::Part;
 use super::plan::Plan;
 use super::planning::plan_run;
 use super::rect_builder::RectJob;
-use super::rect_strip::{Strip, check_stretch};
+use super::rect_strip::Strip;
 use super::rect_tile::{clear_sides, join_own_copies, opened};
 use super::stage::{Clock, Stage};
 use crate::domain::{BandMap, CurveSpec};
@@ -43,6 +43,11 @@ const WEAKNESS_COST: f64 = 10.0;
 const SUCCESSORS: usize = 4;
 /// The memory that the search for rows may take, in bytes: a way that has no sequence soon is given up for the next.
 const ROWS_MEMORY_LIMIT: usize = 16 << 20;
+/// Rows may be pressed or stretched sideways by this much to fill the width: as a band along its length.
+const STRETCH: std::ops::RangeInclusive<f64> = 0.7..=1.3;
+/// So many joins for each row that fits the height look like rows. More, and it is scraps that are repeated.
+const JOINS_PER_ROW: f64 = 3.0;
+
 /// A second pass that has a plan.
 pub(super) struct Way {
     job: BandJob,
@@ -68,6 +73,8 @@ pub(super) struct RowsWish {
     pub(super) goal: Goal,
     /// The greatest misfit of a join.
     pub(super) worst_misfit: f64,
+    /// Whether scraps that are repeated may stand for rows.
+    pub(super) scraps: bool,
     /// Which of its cuts a tile's strip is split at: 0 is the best.
     pub(super) split: usize,
 }
@@ -95,7 +102,7 @@ impl Way {
         options.weights.jump *= JUMP_FACTOR;
         options.weights.rise *= RISE_FACTOR;
         options.weights.misfit = MISFIT_COST;
-        options.weights.weakness = std::env::var("OW_WEAK").map_or(WEAKNESS_COST, |v| v.parse().unwrap());
+        options.weights.weakness = WEAKNESS_COST;
         options.weights.worst_misfit = wish.worst_misfit;
         options.weights.successors = SUCCESSORS;
         let job = BandJob { options, memory_limit: ROWS_MEMORY_LIMIT, ..job.band.clone() };
@@ -112,8 +119,15 @@ impl Way {
             cut.sides = Sides::Filled;
         }
         let (plan, planned) = plan_run(&job, &mut cut, map, clock)?;
-        let joins = plan.sequence.windows(2).filter_map(|w| cut.catalogue.join(w[0], w[1]));
-        let misfit = joins.map(|join| join.misfit).fold(0.0, f64::max);
+        let joins = || plan.sequence.windows(2).filter_map(|w| cut.catalogue.join(w[0], w[1]));
+        let jumps = joins().filter(|join| !join.is_natural).count();
+        let rows = map.curve().length_mm() / strip.height_mm();
+        if !wish.scraps && jumps as f64 > JOINS_PER_ROW * rows.max(1.0) {
+            return Err(JobError::Refused(format!(
+                "rows would be joined {jumps} times where {rows:.1} rows fit the height, from scraps of the pattern"
+            )));
+        }
+        let misfit = joins().map(|join| join.misfit).fold(0.0, f64::max);
         Ok(Self { job, cut, plan, planned, misfit })
     }
 
@@ -134,7 +148,12 @@ impl Way {
             job.options.goal = goal;
         }
         let mut band = Band::made(&job, &self.cut, self.plan.clone(), self.planned, map, None, clock)?;
-        check_stretch(&band, "the rows", "sideways to fill the width")?;
+        if !STRETCH.contains(&band.report.squash) {
+            return Err(JobError::Refused(format!(
+                "the rows would have to be pressed or stretched sideways by {:.0} % to fill the width",
+                (band.report.squash - 1.0).abs() * 100.0
+            )));
+        }
         band.part = turned_back(&band.part);
         if let Some((width_mm, _)) = bridges {
             clock.time(Stage::Bridge, || band.lay_bridges(width_mm, None))?;

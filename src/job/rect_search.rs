@@ -28,14 +28,27 @@ const TALLEST_ROW: f64 = 0.25;
 const HEIGHTS: [f64; 2] = [1.0, 0.6];
 /// Seeds of strips that are tried when those without one fail.
 const SEEDS: [u64; 2] = [1, 2];
-/// The greatest misfit of a join between rows, as tried (see [`crate::pieces::Join::misfit`]).
-const MISFITS: [f64; 3] = [1.0, 2.0, f64::INFINITY];
+/// What joins are accepted, as tried.
+const BARS: [Bar; 3] = [
+    Bar { worst_misfit: 1.0, scraps: false },
+    Bar { worst_misfit: 2.0, scraps: true },
+    Bar { worst_misfit: f64::INFINITY, scraps: true },
+];
 /// So many places are tried at which a tile's strip is split.
 const SPLITS: usize = 2;
-/// The most ways that are tried with one misfit. More, and a refusal takes longer than anyone waits for it.
+/// The most ways that are tried at one bar. More, and a refusal takes longer than anyone waits for it.
 const MOST_ATTEMPTS: usize = 12;
 /// The same for tiles, whose ways take longer and have more in common.
 const MOST_TILE_ATTEMPTS: usize = 6;
+
+/// Which joins are accepted.
+#[derive(Debug, Clone, Copy)]
+struct Bar {
+    /// The greatest misfit (see [`crate::pieces::Join::misfit`]).
+    worst_misfit: f64,
+    /// Whether scraps that are repeated may stand for rows.
+    scraps: bool,
+}
 
 /// Both directions, and all that was tried for them.
 pub(super) struct Found {
@@ -75,27 +88,19 @@ pub(super) fn search(job: &RectJob, clock: &mut Clock<'_>) -> Result<Found, JobE
         .collect::<Result<Vec<_>, _>>()?;
     let mut search =
         Search { job, map, clock, attempts: Vec::new(), allowed: 0, bridge_mm: None, error: None };
-    let most = if job.tile { MOST_TILE_ATTEMPTS } else { MOST_ATTEMPTS };
-    for worst_misfit in MISFITS {
-        search.allowed = search.attempts.len() + most;
-        for strips in &mut heights {
-            for goal in goals(job) {
-                if let Some(found) = search.over_strips(strips, goal, worst_misfit) {
-                    return Ok(found);
-                }
-            }
-        }
-    }
+    let goals = goals(job);
     // Bridges across the sides of a tile would have to match too.
-    search.bridge_mm = job.band.options.bridge_mm.filter(|_| !job.tile);
-    if search.bridge_mm.is_some() {
-        for worst_misfit in MISFITS {
-            search.allowed = search.attempts.len() + most;
-            for strips in &mut heights {
-                if let Some(found) = search.over_strips(strips, Goal::default(), worst_misfit) {
-                    return Ok(found);
-                }
+    let bridge_mm = job.band.options.bridge_mm.filter(|_| !job.tile);
+    for bar in BARS {
+        if let Some(found) = search.at_bar(&mut heights, &goals, bar) {
+            return Ok(found);
+        }
+        if bridge_mm.is_some() {
+            search.bridge_mm = bridge_mm;
+            if let Some(found) = search.at_bar(&mut heights, &[Goal::default()], bar) {
+                return Ok(found);
             }
+            search.bridge_mm = None;
         }
     }
     Err(search.refusal())
@@ -129,8 +134,23 @@ fn first_goals(goal: Goal) -> Vec<Goal> {
 }
 
 impl Search<'_, '_> {
+    /// The first way that comes out right with joins that pass a bar.
+    fn at_bar(&mut self, heights: &mut [Strips], goals: &[Goal], bar: Bar) -> Option<Found> {
+        let most = if self.job.tile { MOST_TILE_ATTEMPTS } else { MOST_ATTEMPTS };
+        self.allowed = self.attempts.len() + most;
+        for strips in heights {
+            for &goal in goals {
+                if let Some(found) = self.over_strips(strips, goal, bar) {
+                    return Some(found);
+                }
+            }
+        }
+        None
+    }
+
     /// The first strip of one height that does, if any.
-    fn over_strips(&mut self, strips: &mut Strips, goal: Goal, worst_misfit: f64) -> Option<Found> {
+    fn over_strips(&mut self, strips: &mut Strips, goal: Goal, bar: Bar) -> Option<Found> {
+        let Bar { worst_misfit, scraps } = bar;
         let given = self.job.band.options.seed;
         let seeds: Vec<Option<u64>> = match given {
             Some(_) => vec![given],
@@ -159,7 +179,7 @@ impl Search<'_, '_> {
                 }
             };
             for split in 0..if self.job.tile { SPLITS } else { 1 } {
-                let rows = RowsWish { goal, worst_misfit, split };
+                let rows = RowsWish { goal, worst_misfit, scraps, split };
                 if let Some((way, second)) = self.over_strip(&strip, rows, &strips.exemplar) {
                     return Some(Found {
                         first: strip,

@@ -14,16 +14,15 @@ use super::rect_tile::{join_own_copies, opened};
 use super::stage::{Clock, Stage};
 use crate::domain::{BandMap, PlanarCurve};
 use crate::exemplar::Exemplar;
-use crate::fit::Sides;
 use crate::planar::{Region, Tolerances};
 use crate::topology::Goal;
 
 /// The memory that the search for a strip may take, in bytes: one that has no sequence soon is given up.
-const STRIP_MEMORY_LIMIT: usize = 128 << 20;
+const STRIP_MEMORY_LIMIT: usize = 16 << 20;
 /// What a jump of the misfit 1 costs in the first pass, in λ: as in the second, as much as the jump itself.
 const MISFIT_COST: f64 = 1.0;
-/// Bands may be pressed or stretched across by this much to fill the height or the width: as along their length.
-const STRETCH: std::ops::RangeInclusive<f64> = 0.7..=1.3;
+/// Successors that are weighed of each piece, of each orientation. More, and the search is longer; strips are no better.
+const SUCCESSORS: usize = 8;
 /// The first pass may use this part of the chord error, so that both stay within it.
 const FIRST_CHORD_SHARE: f64 = 0.5;
 
@@ -33,6 +32,13 @@ pub(super) struct Strip {
     pub(super) band: Band,
     /// In millimetres.
     pub(super) cuts_mm: Vec<f64>,
+}
+
+impl Strip {
+    /// How high its ink is.
+    pub(super) fn height_mm(&self) -> f64 {
+        self.band.part.region.bounds_mm().map_or(0.0, |(low, high)| high.y - low.y)
+    }
 }
 
 /// What a strip is asked for.
@@ -95,6 +101,7 @@ impl Strips {
         job.options.seed = wish.seed;
         job.options.mirror |= wish.mirror;
         job.options.weights.misfit = MISFIT_COST;
+        job.options.weights.successors = SUCCESSORS;
         job.options.weights.worst_misfit = wish.worst_misfit;
         job
     }
@@ -135,7 +142,6 @@ impl Strips {
             cut = slice(&job, &region)?;
             join_own_copies(&mut cut, false);
         }
-        cut.sides = Sides::Filled;
         let map = flat_map(self.map_width_mm, cut.height_mm)?;
         let (plan, planned) = plan_run(job, &mut cut, &map, clock)?;
         let mut strips = self.known.iter().filter_map(|(_, strip)| strip.as_ref());
@@ -143,19 +149,8 @@ impl Strips {
             return Ok(None);
         }
         let band = Band::made(job, &cut, plan, planned, &map, None, clock)?;
-        check_stretch(&band, "the strip", "to be as high as the exemplar")?;
         Ok(Some(Strip { band, cuts_mm: cuts_mm(&cut) }))
     }
-}
-
-/// Refuses a band that is much stretched across.
-pub(super) fn check_stretch(band: &Band, what: &str, why: &str) -> Result<(), JobError> {
-    let squash = band.report.squash;
-    if STRETCH.contains(&squash) {
-        return Ok(());
-    }
-    let per_cent = (squash - 1.0).abs() * 100.0;
-    Err(JobError::Refused(format!("{what} would have to be pressed or stretched by {per_cent:.0} % {why}")))
 }
 
 /// The map of a straight band.

@@ -8,7 +8,9 @@
 
 use std::f64::consts::PI;
 
-use super::piece::{End, Endpoint, Piece};
+use glam::DVec2;
+
+use super::piece::{Endpoint, Piece};
 
 /// Strands and slivers that are this wide, as a part of the exemplar's longer side, are wide enough. More, and only
 /// the trunk of an ornament is; less, and hairs are.
@@ -22,20 +24,17 @@ const HELD: f64 = 0.06;
 pub(super) struct Side<'a> {
     /// Portal endpoints, top to bottom.
     endpoints: &'a [Endpoint],
-    /// The depth of the shallowest chain that comes back to the side, in millimetres.
+    /// How far the nearest place is, in millimetres, at which a contour turns back towards the side or away from it.
     depth_mm: f64,
 }
 
 impl<'a> Side<'a> {
     pub(super) fn left(piece: &'a Piece) -> Self {
-        let depths = piece.chains.iter().filter(|c| matches!((c.start, c.end), (End::Left(_), End::Left(_))));
-        let depths = depths.map(|c| c.points.iter().map(|p| p.x).fold(0.0, f64::max));
-        Self { endpoints: &piece.left, depth_mm: depths.fold(f64::INFINITY, f64::min) }
+        Self { endpoints: &piece.left, depth_mm: turns(piece).fold(f64::INFINITY, f64::min) }
     }
 
     pub(super) fn right(piece: &'a Piece) -> Self {
-        let depths = piece.chains.iter().filter(|c| matches!((c.start, c.end), (End::Right(_), End::Right(_))));
-        let depths = depths.map(|c| c.points.iter().map(|p| piece.width_mm - p.x).fold(0.0, f64::max));
+        let depths = turns(piece).map(|x_mm| piece.width_mm - x_mm);
         Self { endpoints: &piece.right, depth_mm: depths.fold(f64::INFINITY, f64::min) }
     }
 
@@ -46,6 +45,13 @@ impl<'a> Side<'a> {
     pub(super) fn endpoints(&self) -> &'a [Endpoint] {
         self.endpoints
     }
+}
+
+/// Where contours of `piece` turn back along x, in millimetres from its left side.
+fn turns(piece: &Piece) -> impl Iterator<Item = f64> {
+    let rows = piece.chains.iter().map(|chain| &chain.points).chain(&piece.loops);
+    let turn = |w: &[DVec2]| ((w[1].x - w[0].x) * (w[2].x - w[1].x) < 0.0).then_some(w[1].x);
+    rows.flat_map(move |points| points.windows(3).filter_map(turn))
 }
 
 /// The misfit of the worst portal where `right` meets `left`, as they lie. It is 0 where every strand goes straight
@@ -78,7 +84,7 @@ pub(super) fn weakness(right: Side<'_>, left: Side<'_>, longer_mm: f64, height_m
         return 0.0;
     }
     let widths = || right.endpoints.chunks_exact(2).chain(left.endpoints.chunks_exact(2)).map(width_mm);
-    // What comes back to the cut on one side is likely to find its like on the other.
+    // What turns back beside the cut leaves a sliver, which is likely to find its like on the other side.
     let sliver_mm = 2.0 * right.depth_mm.min(left.depth_mm);
     let narrowest_mm = widths().fold(sliver_mm, f64::min);
     let lacks = |found: f64, wanted: f64| (1.0 - found / wanted).max(0.0).powi(2);
@@ -88,7 +94,6 @@ pub(super) fn weakness(right: Side<'_>, left: Side<'_>, longer_mm: f64, height_m
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec2;
 
     fn side(ys: &[f64], degrees: f64) -> Vec<Endpoint> {
         let tangent = DVec2::from_angle(degrees.to_radians());
