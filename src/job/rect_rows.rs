@@ -42,7 +42,7 @@ const WEAKNESS_COST: f64 = 10.0;
 /// make the search longer and the pattern no better.
 const SUCCESSORS: usize = 4;
 /// The memory that the search for rows may take, in bytes: a way that has no sequence soon is given up for the next.
-const ROWS_MEMORY_LIMIT: usize = 16 << 20;
+const ROWS_MEMORY_LIMIT: usize = 8 << 20;
 /// Rows may be pressed or stretched sideways by this much to fill the width: as a band along its length.
 const STRETCH: std::ops::RangeInclusive<f64> = 0.7..=1.3;
 /// So many joins for each row that fits the height look like rows. More, and it is scraps that are repeated.

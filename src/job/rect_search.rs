@@ -37,7 +37,7 @@ const BARS: [Bar; 3] = [
 /// So many places are tried at which a tile's strip is split.
 const SPLITS: usize = 2;
 /// The most ways that are tried at one bar. More, and a refusal takes longer than anyone waits for it.
-const MOST_ATTEMPTS: usize = 12;
+const MOST_ATTEMPTS: usize = 8;
 /// The same for tiles, whose ways take longer and have more in common.
 const MOST_TILE_ATTEMPTS: usize = 6;
 
@@ -162,7 +162,7 @@ impl Search<'_, '_> {
         for seed in seeds {
             for goal in first_goals(goal) {
                 // What the exemplar has as it is goes before what a mirror makes of it.
-                wishes.extend([false, true].map(|mirror| Wish { goal, seed, worst_misfit, mirror }));
+                wishes.extend([false, true].map(|fold| Wish { goal, seed, worst_misfit, scraps, fold }));
             }
         }
         for wish in wishes {

@@ -18,9 +18,15 @@ use crate::planar::{Region, Tolerances};
 use crate::topology::Goal;
 
 /// The memory that the search for a strip may take, in bytes: one that has no sequence soon is given up.
-const STRIP_MEMORY_LIMIT: usize = 16 << 20;
+const STRIP_MEMORY_LIMIT: usize = 8 << 20;
 /// What a jump of the misfit 1 costs in the first pass, in λ: as in the second, as much as the jump itself.
 const MISFIT_COST: f64 = 1.0;
+/// What climbing costs, as a multiple of what it costs a band. Less, and strips use one climbing piece up and another
+/// down; more, and joins are taken that fit worse.
+const RISE_FACTOR: f64 = 20.0;
+/// So many jumps for each time that the exemplar fits the strip leave something of it. More, and it is scraps that are
+/// repeated.
+const JUMPS_PER_RUN: f64 = 4.0;
 /// Successors that are weighed of each piece, of each orientation. More, and the search is longer; strips are no better.
 const SUCCESSORS: usize = 8;
 /// The first pass may use this part of the chord error, so that both stay within it.
@@ -48,15 +54,17 @@ pub(super) struct Wish {
     pub(super) seed: Option<u64>,
     /// The greatest misfit of a join.
     pub(super) worst_misfit: f64,
-    /// Whether pieces may be used left for right.
-    pub(super) mirror: bool,
+    /// Whether scraps that are repeated may stand for the pattern.
+    pub(super) scraps: bool,
+    /// Whether the exemplar is folded: it may go on as its own reflection, and hardly any other way. Such a strip is
+    /// found at once where there are too many others to look at.
+    pub(super) fold: bool,
 }
 
 impl Wish {
     /// Whether what cannot be for `other` cannot be for this one: a seed changes what is cheap, not what can be.
     fn is_within(&self, other: &Self) -> bool {
-        let at_most = self.worst_misfit <= other.worst_misfit && self.mirror <= other.mirror;
-        at_most && self.goal == other.goal
+        self.worst_misfit <= other.worst_misfit && self.fold == other.fold && self.goal == other.goal
     }
 }
 
@@ -99,9 +107,10 @@ impl Strips {
         let mut job = self.job.clone();
         job.options.goal = wish.goal;
         job.options.seed = wish.seed;
-        job.options.mirror |= wish.mirror;
+        job.options.mirror |= wish.fold;
         job.options.weights.misfit = MISFIT_COST;
-        job.options.weights.successors = SUCCESSORS;
+        job.options.weights.rise *= RISE_FACTOR;
+        job.options.weights.successors = if wish.fold { 1 } else { SUCCESSORS };
         job.options.weights.worst_misfit = wish.worst_misfit;
         job
     }
@@ -117,7 +126,7 @@ impl Strips {
         if self.refused.iter().any(|refused| wish.is_within(refused)) {
             return Ok(None);
         }
-        match self.made(&self.job(wish), clock) {
+        match self.made(wish, clock) {
             Ok(strip) => {
                 self.known.push((wish, strip.clone()));
                 Ok(strip)
@@ -130,7 +139,8 @@ impl Strips {
         }
     }
 
-    fn made(&self, job: &BandJob, clock: &mut Clock<'_>) -> Result<Option<Strip>, JobError> {
+    fn made(&self, wish: Wish, clock: &mut Clock<'_>) -> Result<Option<Strip>, JobError> {
+        let job = &self.job(wish);
         let mut slice = |job: &BandJob, region: &Region| {
             clock.time(Stage::Slice, || slice_region(job, self.exemplar.clone(), region))
         };
@@ -144,6 +154,14 @@ impl Strips {
         }
         let map = flat_map(self.map_width_mm, cut.height_mm)?;
         let (plan, planned) = plan_run(job, &mut cut, &map, clock)?;
+        let joins = plan.sequence.windows(2).filter_map(|w| cut.catalogue.join(w[0], w[1]));
+        let jumps = joins.filter(|join| !join.is_natural).count();
+        let runs = self.map_width_mm / cut.catalogue.width_mm();
+        if !wish.scraps && jumps as f64 > JUMPS_PER_RUN * runs.max(1.0) {
+            return Err(JobError::Refused(format!(
+                "the strip would have {jumps} jumps where the exemplar fits {runs:.1} times, and be made of scraps of it"
+            )));
+        }
         let mut strips = self.known.iter().filter_map(|(_, strip)| strip.as_ref());
         if strips.any(|strip| strip.band.plan.sequence == plan.sequence) {
             return Ok(None);
