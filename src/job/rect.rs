@@ -16,6 +16,7 @@ use super::rect_builder::RectJob;
 use super::rect_report::{DirectionReport, RectReport};
 use super::rect_rows::Made;
 use super::rect_search::{Found, search};
+use super::report::MadeReport;
 use super::stage::{Clock, Stage};
 use crate::planar::Region;
 use crate::topology::{Topology, Wanted};
@@ -36,7 +37,7 @@ impl Rect {
         let found = search(job, &mut clock)?;
         let report = describe(job, &found);
         let Made { mut band, drawn, .. } = found.second;
-        band.report.times = clock.times;
+        band.report.made.times = clock.times;
         Ok(Self { band, drawn, report })
     }
 
@@ -74,7 +75,9 @@ impl Rect {
         self.band.job.check_outputs(outputs, report_file)?;
         let (found, pending) = self.band.deliver(outputs, Some(self.drawn.clone()), progress)?;
         let mut report = self.report.clone();
-        report.measured(found);
+        (report.components, report.holes) = (found.components, found.holes);
+        let notes = report.made.notes.into_iter().chain(found.made.notes).collect();
+        report.made = MadeReport { notes, ..found.made };
         persist(pending, report_file.map(|target| (target, report.to_json())))?;
         Ok(report)
     }
@@ -86,7 +89,7 @@ fn describe(job: &RectJob, found: &Found) -> RectReport {
     let options = &job.band.options;
     let made = &second.band.report;
     // Notes on the exemplar itself come with the second pass too.
-    let own = first_report.notes.iter().filter(|note| !exemplar.notes().contains(note));
+    let own = first_report.made.notes.iter().filter(|note| !exemplar.notes().contains(note));
     let notes = own.map(|note| format!("first pass: {note}")).collect();
     RectReport {
         schema_version: 1,
@@ -108,19 +111,6 @@ fn describe(job: &RectJob, found: &Found) -> RectReport {
         bridges: made.bridges.clone(),
         attempts: found.attempts.clone(),
         chosen_attempt: found.chosen,
-        min_feature: None,
-        min_gap: None,
-        area_mm2: made.area_mm2,
-        page_mm: second.band.part.page_mm.to_array(),
-        vertices: made.vertices,
-        svg_segments: None,
-        triangles: None,
-        shells: None,
-        genus: None,
-        volume_mm3: None,
-        files: Vec::new(),
-        certificate: made.certificate.clone(),
-        notes,
-        times: Vec::new(),
+        made: MadeReport { notes, ..made.made.clone() },
     }
 }

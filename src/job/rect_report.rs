@@ -6,13 +6,12 @@ use super::bridging::BridgesReport;
 
 use super::band::Band;
 use super::builder::BandJob;
-use super::certificate::Certificate;
 use super::error::JobError;
 use super::json;
 use super::rect_rows::Way;
-use super::report::{BandReport, DroppedCutReport, InputReport, SeamReport, StageTime, StitchReport};
+use super::report::{BandReport, DroppedCutReport, InputReport, MadeReport, SeamReport, StitchReport};
 use crate::topology::Wanted;
-use crate::verify::{Narrowest, Tiling};
+use crate::verify::Tiling;
 
 /// One of the two passes of a rectangle. Lengths are millimetres.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -138,10 +137,7 @@ impl Attempt {
             allowed_misfit: Some(allowed_misfit).filter(|m| m.is_finite()),
             misfit: way.ok().map(|way| way.misfit),
             cost: way.ok().map(|way| way.plan.cost),
-            ..Self::first(
-                &strip.job,
-                way.err().map_or_else(|| Self::PLANNED.to_owned(), ToString::to_string),
-            )
+            ..Self::first(&strip.job, way.err().map_or_else(|| Self::PLANNED.to_owned(), ToString::to_string))
         }
     }
 }
@@ -187,54 +183,12 @@ pub struct RectReport {
     pub attempts: Vec<Attempt>,
     /// The one that was chosen, counted from 0.
     pub chosen_attempt: usize,
-    /// The narrowest ink, measured on the result.
-    pub min_feature: Option<Narrowest>,
-    /// The narrowest gap, measured on the result.
-    pub min_gap: Option<Narrowest>,
-    /// Ink of the part in square millimetres.
-    pub area_mm2: f64,
-    /// Width and height of the page.
-    pub page_mm: [f64; 2],
-    /// Vertices of the part's outline.
-    pub vertices: usize,
-    /// Straight segments and cubics in the SVG, if one was written.
-    pub svg_segments: Option<[usize; 2]>,
-    /// Facets of the STL, if one was written.
-    pub triangles: Option<usize>,
-    /// Shells of the STL.
-    pub shells: Option<usize>,
-    /// Total genus of the STL.
-    pub genus: Option<i64>,
-    /// Volume of the STL in cubic millimetres.
-    pub volume_mm3: Option<f64>,
-    /// The files that were written.
-    pub files: Vec<String>,
-    /// What proves the counts without trusting the search: of the second pass, whose pieces are rows.
-    pub certificate: Certificate,
-    /// What the user may want to know.
-    pub notes: Vec<String>,
-    /// Time per stage.
-    pub times: Vec<StageTime>,
+    /// What was made of it, and what was found in the files.
+    #[serde(flatten)]
+    pub made: MadeReport,
 }
 
 impl RectReport {
-    /// Takes over what was measured on the files.
-    pub(super) fn measured(&mut self, found: BandReport) {
-        self.components = found.components;
-        self.holes = found.holes;
-        self.min_feature = found.min_feature;
-        self.min_gap = found.min_gap;
-        self.svg_segments = found.svg_segments;
-        self.triangles = found.triangles;
-        self.shells = found.shells;
-        self.genus = found.genus;
-        self.volume_mm3 = found.volume_mm3;
-        self.files = found.files;
-        self.certificate = found.certificate;
-        self.notes.extend(found.notes);
-        self.times = found.times;
-    }
-
     /// The report as indented JSON, arrays on one line, ending in a line break.
     pub fn to_json(&self) -> String {
         json::indented(self)

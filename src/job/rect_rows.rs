@@ -106,7 +106,8 @@ impl Way {
         options.weights.worst_misfit = wish.worst_misfit;
         options.weights.successors = SUCCESSORS;
         let job = BandJob { options, memory_limit: ROWS_MEMORY_LIMIT, ..job.band.clone() };
-        let mut slice = |region: &_| clock.time(Stage::Slice, || slice_region(&job, exemplar.clone(), region));
+        let mut slice =
+            |region: &_| clock.time(Stage::Slice, || slice_region(&job, exemplar.clone(), region));
         // The lower side to the right, so that rows come in reading order.
         let standing = strip.band.part.region.turned_left();
         let mut cut = slice(&standing)?;

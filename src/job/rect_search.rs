@@ -10,8 +10,8 @@
 //!
 //! Excluded: how a strip is made ([`super::rect_strip`]) and how its rows are joined ([`super::rect_rows`]).
 
-use super::error::JobError;
 use super::cut::read_exemplar;
+use super::error::JobError;
 use super::rect_builder::RectJob;
 use super::rect_report::Attempt;
 use super::rect_rows::{Made, RowsWish, Way};
@@ -34,6 +34,9 @@ const BARS: [Bar; 3] = [
     Bar { worst_misfit: 2.0, scraps: true },
     Bar { worst_misfit: f64::INFINITY, scraps: true },
 ];
+/// The greatest misfit of a join between rows, whatever strips may have: there are many in a panel, and a sliver is
+/// seen in each. Reflections are always within it.
+const ROWS_MISFIT: f64 = 2.0;
 /// So many places are tried at which a tile's strip is split.
 const SPLITS: usize = 2;
 /// The most ways that are tried at one bar. More, and a refusal takes longer than anyone waits for it.
@@ -179,7 +182,7 @@ impl Search<'_, '_> {
                 }
             };
             for split in 0..if self.job.tile { SPLITS } else { 1 } {
-                let rows = RowsWish { goal, worst_misfit, scraps, split };
+                let rows = RowsWish { goal, worst_misfit: worst_misfit.min(ROWS_MISFIT), scraps, split };
                 if let Some((way, second)) = self.over_strip(&strip, rows, &strips.exemplar) {
                     return Some(Found {
                         first: strip,

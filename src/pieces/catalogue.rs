@@ -52,7 +52,15 @@ pub struct CostWeightsError {
 
 impl Default for CostWeights {
     fn default() -> Self {
-        Self { alpha: 0.8, jump: 1.0, rise: 50.0, misfit: 0.0, worst_misfit: f64::INFINITY, weakness: 0.0, successors: 16 }
+        Self {
+            alpha: 0.8,
+            jump: 1.0,
+            rise: 50.0,
+            misfit: 0.0,
+            worst_misfit: f64::INFINITY,
+            weakness: 0.0,
+            successors: 16,
+        }
     }
 }
 
@@ -154,7 +162,8 @@ impl Catalogue {
         let scale = Scale { longer_mm: size.max_element(), height_mm: size.y };
         let lefts: Vec<Side<'_>> = catalogue.pieces.iter().map(Side::left).collect();
         let joins = catalogue.pieces.iter().enumerate();
-        let joins = joins.map(|(from, piece)| catalogue.joins_from(from, Side::right(piece), &lefts, scale, weights));
+        let joins =
+            joins.map(|(from, piece)| catalogue.joins_from(from, Side::right(piece), &lefts, scale, weights));
         catalogue.joins = joins.collect();
         catalogue
     }
