@@ -75,8 +75,6 @@ pub(super) struct RowsWish {
     pub(super) worst_misfit: f64,
     /// Whether scraps that are repeated may stand for rows.
     pub(super) scraps: bool,
-    /// Whether rows may be used upside down.
-    pub(super) mirror: bool,
     /// Which of its cuts a tile's strip is split at: 0 is the best.
     pub(super) split: usize,
 }
@@ -98,7 +96,7 @@ impl Way {
         let mut options = job.band.options.clone();
         options.along = CurveSpec::Line { length_mm: job.size.height_mm() };
         options.goal = wish.goal;
-        options.mirror |= wish.mirror;
+        options.mirror = true;
         // What is kept whole are places of the exemplar, and these the strip has kept already.
         options.kept.clear();
         options.weights.jump *= JUMP_FACTOR;
@@ -106,9 +104,7 @@ impl Way {
         options.weights.misfit = MISFIT_COST;
         options.weights.weakness = WEAKNESS_COST;
         options.weights.worst_misfit = wish.worst_misfit;
-        if wish.mirror {
-            options.weights.successors = SUCCESSORS;
-        }
+        options.weights.successors = SUCCESSORS;
         let job = BandJob { options, memory_limit: ROWS_MEMORY_LIMIT, ..job.band.clone() };
         let mut slice =
             |region: &_| clock.time(Stage::Slice, || slice_region(&job, exemplar.clone(), region));

@@ -94,9 +94,7 @@ pub(super) fn search(job: &RectJob, clock: &mut Clock<'_>) -> Result<Found, JobE
     let goals = goals(job);
     // Bridges across the sides of a tile would have to match too.
     let bridge_mm = job.band.options.bridge_mm.filter(|_| !job.tile);
-    // Tiles begin and end with one and the same cut, which leaves too few ways to be choosy.
-    let bars = if job.tile { &BARS[BARS.len() - 1..] } else { &BARS[..] };
-    for &bar in bars {
+    for bar in BARS {
         if let Some(found) = search.at_bar(&mut heights, &goals, bar) {
             return Ok(found);
         }
@@ -167,8 +165,7 @@ impl Search<'_, '_> {
         for seed in seeds {
             for goal in first_goals(goal) {
                 // What the exemplar has as it is goes before what a mirror makes of it.
-                let folds: &[bool] = if self.job.tile { &[false] } else { &[false, true] };
-                wishes.extend(folds.iter().map(|&fold| Wish { goal, seed, worst_misfit, scraps, fold }));
+                wishes.extend([false, true].map(|fold| Wish { goal, seed, worst_misfit, scraps, fold }));
             }
         }
         for wish in wishes {
@@ -184,7 +181,8 @@ impl Search<'_, '_> {
                     continue;
                 }
             };
-            for rows in self.rows_wishes(goal, bar) {
+            for split in 0..if self.job.tile { SPLITS } else { 1 } {
+                let rows = RowsWish { goal, worst_misfit: worst_misfit.min(ROWS_MISFIT), scraps, split };
                 if let Some((way, second)) = self.over_strip(&strip, rows, &strips.exemplar) {
                     return Some(Found {
                         first: strip,
@@ -198,19 +196,6 @@ impl Search<'_, '_> {
             }
         }
         None
-    }
-
-    /// What is tried over a strip, in order.
-    fn rows_wishes(&self, goal: Goal, bar: Bar) -> Vec<RowsWish> {
-        let Bar { worst_misfit, scraps } = bar;
-        if self.job.tile {
-            let ways = (0..SPLITS).flat_map(|split| [false, true].map(|mirror| (split, mirror)));
-            return ways
-                .map(|(split, mirror)| RowsWish { goal, worst_misfit, scraps, split, mirror })
-                .collect();
-        }
-        let worst_misfit = worst_misfit.min(ROWS_MISFIT);
-        vec![RowsWish { goal, worst_misfit, scraps, split: 0, mirror: true }]
     }
 
     /// A second pass over a strip, if it comes out right.

@@ -14,7 +14,6 @@ use super::rect_tile::{join_own_copies, opened};
 use super::stage::{Clock, Stage};
 use crate::domain::{BandMap, PlanarCurve};
 use crate::exemplar::Exemplar;
-use crate::fit::Sides;
 use crate::planar::{Region, Tolerances};
 use crate::topology::Goal;
 
@@ -109,13 +108,10 @@ impl Strips {
         job.options.goal = wish.goal;
         job.options.seed = wish.seed;
         job.options.mirror |= wish.fold;
-        if !self.tile {
-            let weights = &mut job.options.weights;
-            weights.misfit = MISFIT_COST;
-            weights.worst_misfit = wish.worst_misfit;
-            weights.rise *= RISE_FACTOR;
-            weights.successors = if wish.fold { 1 } else { SUCCESSORS };
-        }
+        job.options.weights.misfit = MISFIT_COST;
+        job.options.weights.rise *= RISE_FACTOR;
+        job.options.weights.successors = if wish.fold { 1 } else { SUCCESSORS };
+        job.options.weights.worst_misfit = wish.worst_misfit;
         job
     }
 
@@ -155,7 +151,6 @@ impl Strips {
             job.options.kept = kept;
             cut = slice(&job, &region)?;
             join_own_copies(&mut cut, false);
-            cut.sides = Sides::Filled;
         }
         let map = flat_map(self.map_width_mm, cut.height_mm)?;
         let (plan, planned) = plan_run(job, &mut cut, &map, clock)?;
