@@ -154,6 +154,8 @@ impl Search<'_, '_> {
     /// The first strip of one height that does, if any.
     fn over_strips(&mut self, strips: &mut Strips, goal: Goal, bar: Bar) -> Option<Found> {
         let Bar { worst_misfit, scraps } = bar;
+        // A tile begins and ends with one and the same cut, which leaves too few ways to be choosy.
+        let scraps = scraps || self.job.tile;
         let given = self.job.band.options.seed;
         let seeds: Vec<Option<u64>> = match given {
             Some(_) => vec![given],
