@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let report = border.write(&[Output::file(folder.join("border.svg"))?], None, &mut |_| {})?;
 
-    println!("{}", report.files[0]);
+    println!("{}", report.made.files[0]);
     println!("components and holes   {} and {}", report.components, report.holes);
     println!(
         "length                 {} mm, stretched from {:+.2} mm",
@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("pieces                 {} of {}", report.pieces_in_result, report.pieces_in_exemplar);
     println!("jumps                  {} in {} seams", report.seams.jumps, report.seams.count);
     println!("worst kink at a seam   {:.1} degrees", report.seams.worst_angle_after_deg);
-    if let Some(ink) = report.min_feature {
+    if let Some(ink) = report.made.min_feature {
         let place = ink.position_mm;
         println!("narrowest ink          {:.3} mm at ({:.1}, {:.1}) mm", ink.width_mm, place.x, place.y);
     }

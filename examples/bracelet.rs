@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let report = bracelet.write(&outputs, None, &mut |_| {})?;
 
     println!("{} component, {} holes", report.components, report.holes);
-    for file in &report.files {
+    for file in &report.made.files {
         println!("{file}");
     }
     Ok(())

@@ -138,7 +138,7 @@ fn band(
 }
 
 fn solve_time(report: &BandReport) -> Duration {
-    let solve = report.times.iter().find(|t| t.stage == "solve");
+    let solve = report.made.times.iter().find(|t| t.stage == "solve");
     Duration::from_secs_f64(solve.map_or(0.0, |t| t.milliseconds / 1e3))
 }
 

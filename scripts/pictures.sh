@@ -11,7 +11,7 @@ band() { "$openwork" band "$@" --quiet; }
 band $exemplars/vine.svg --along circle:65mm --width 14mm --components 1 --closed-pattern -o $pictures/bracelet.png
 band $exemplars/lace.svg --along path:fixtures/curves/wave.svg --width 14mm --components 1 -o $pictures/lace.png
 band $exemplars/strokes.svg --along path:fixtures/curves/oval.svg#oval --width 14mm --components 1 --closed-pattern -o $pictures/oval.png
-"$openwork" rect $exemplars/vine.svg --size 120x80mm --components 1 -o $pictures/panel.png --quiet
+"$openwork" rect $exemplars/filigree.svg --size 120x80mm --components 1 -o $pictures/panel.png --quiet
 cargo run --release --locked --quiet --example stitching -- --pictures $pictures/stitching.png > /dev/null
 "$openwork" analyze $exemplars/vine.svg -o $pictures/analysis.png --quiet
 cargo run --release --locked --quiet --example persistences -- $exemplars/vine.svg $pictures/persistences.png

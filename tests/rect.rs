@@ -56,10 +56,20 @@ fn copies_of_a_tile_join() {
     assert_eq!((file.components, found.components, found.four_components), (1, 1, 1));
     assert_eq!(report["tiling"]["holes"], found.holes);
     assert_eq!(report["tiling"]["four_holes"], found.four_holes);
+    // The program says the same.
+    let said = room.succeeds("verify out.svg --tiles --components 1 --json").stdout;
+    let said: serde_json::Value = serde_json::from_slice(&said).unwrap();
+    assert_eq!(said["tiling"], report["tiling"]);
+    let said = String::from_utf8(room.succeeds("verify out.svg --tiles").stdout).unwrap();
+    assert!(said.contains("2 x 2 tiles  1 component(s)"), "{said}");
+    assert_eq!(room.run("verify out.svg --tiles --components 2").code, 4);
+    assert_eq!(room.run("verify out.stl --tiles").code, 2);
     // A rectangle that is no tile does not join.
-    rect(&room, "lattice.svg --size 40x40mm --width 10mm --components 1");
+    rect(&room, "vine.svg --size 40x40mm --width 10mm --components 1");
     let plain = read_svg(&room.read("out.svg"), 0.0025).unwrap();
-    assert!(tiling(&plain.region).is_err() || tiling(&plain.region).unwrap().joins_up == 0);
+    assert!(tiling(&plain.region).is_err());
+    let refused = room.run("verify out.svg --tiles");
+    assert!(refused.code == 4 && refused.stderr.contains("copies do not join"), "{}", refused.stderr);
 }
 
 #[test]

@@ -42,7 +42,7 @@ fn the_report_says_which_seams_fell_back_and_why() {
         assert!(beside(fallback.place) && beside(fallback.place - 1), "{fallback:?}");
     }
     let note = format!("{} of {} pieces were warped", stitching.fallbacks.len(), report.pieces_in_result);
-    assert!(report.notes.iter().any(|n| n.starts_with(&note)), "{:?}", report.notes);
+    assert!(report.made.notes.iter().any(|n| n.starts_with(&note)), "{:?}", report.made.notes);
 }
 
 #[test]

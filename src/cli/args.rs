@@ -102,6 +102,8 @@ Examples:
     openwork verify sign.svg --components 1 --holes 0 --min-feature 0.5mm
   What a solid has, as JSON:
     openwork verify sign.stl --json
+  Whether copies of a tile join, and what the tiling has:
+    openwork verify tile.svg --tiles
   Whether a report proves the counts of the file that was written with it:
     openwork verify --certificate bracelet.json bracelet.svg";
 
@@ -283,6 +285,9 @@ pub(super) struct VerifyArguments {
     /// The report that was written with the file: replay its certificate, step by step
     #[arg(long, value_name = "REPORT.json")]
     pub(super) certificate: Option<PathBuf>,
+    /// It must be a tile: opposite sides match, so that copies join (SVG). Tells what the tiling has
+    #[arg(long)]
+    pub(super) tiles: bool,
     /// Components (SVG) or shells (STL) that it must have
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(super) components: Option<usize>,

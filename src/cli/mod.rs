@@ -17,6 +17,7 @@ mod progress;
 mod rect;
 mod run;
 mod values;
+mod verify;
 
 use std::process::ExitCode;
 

@@ -50,5 +50,5 @@ fn say_rect(report: &RectReport) {
             tiling.holes
         );
     }
-    say_found(report.min_feature, report.min_gap, &report.notes, &report.files);
+    say_found(&report.made);
 }

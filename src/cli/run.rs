@@ -7,23 +7,21 @@ use thiserror::Error;
 
 use super::args::{
     AnalyzeArguments, Arguments, BandArguments, Command, ExtrudeArguments, PatternArguments,
-    ToleranceArguments, VerifyArguments,
+    ToleranceArguments,
 };
 use super::progress::Progress;
-use super::rect;
+use super::{rect, verify};
 use crate::analysis::{Analysis, AnalysisError};
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
 use crate::export;
 use crate::job::{
-    BandBuilder, BandReport, Choice, DEFAULT_TEMPERATURE, ExtrudeBridges, Format, JobError, Output,
-    READ_SHARE, SlicingChoice, Target, extrude,
+    BandBuilder, BandReport, Choice, DEFAULT_TEMPERATURE, ExtrudeBridges, Format, JobError, MadeReport,
+    Output, READ_SHARE, SlicingChoice, Target, extrude,
 };
 use crate::pieces::CostWeights;
 use crate::planar::{Tolerances, TolerancesError};
 use crate::reeb::{SlicingError, SlicingRule};
-use crate::verify::{
-    self, CertificateError, CertificateReport, Counted, Expected, Mismatch, Narrowest, VerifyError,
-};
+use crate::verify::{CertificateError, CertificateReport, Mismatch, TilingFault, VerifyError};
 
 /// Whatever ends the program with a message.
 #[derive(Debug, Error)]
@@ -36,6 +34,8 @@ pub(super) enum CliError {
     Unjudged { file: String, error: VerifyError },
     #[error("{file}: {mismatch}")]
     Mismatch { file: String, mismatch: Mismatch },
+    #[error("{file}: {fault}")]
+    Untiled { file: String, fault: TilingFault },
     #[error("{file}: {error}")]
     Uncertified { file: String, error: CertificateError },
     #[error("{file}: {report}")]
@@ -63,7 +63,7 @@ impl CliError {
             | Self::Uncertified { .. }
             | Self::UnknownKind { .. }
             | Self::Stdout(_) => 2,
-            Self::Mismatch { .. } | Self::Refuted { .. } => 4,
+            Self::Mismatch { .. } | Self::Untiled { .. } | Self::Refuted { .. } => 4,
             Self::Analysis(AnalysisError::Slicing(SlicingError::TooThin { .. })) => 3,
             Self::Analysis(_) => 2,
         }
@@ -76,11 +76,11 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, CliError> {
         Command::Rect(arguments) => rect::run_rect(&arguments),
         Command::Analyze(analyze) => run_analyze(&analyze),
         Command::Extrude(extrude) => run_extrude(&extrude),
-        Command::Verify(verify) => run_verify(&verify),
+        Command::Verify(arguments) => verify::run(&arguments),
     }
 }
 
-fn tolerances(arguments: &ToleranceArguments) -> Result<Tolerances, TolerancesError> {
+pub(super) fn tolerances(arguments: &ToleranceArguments) -> Result<Tolerances, TolerancesError> {
     let or_none = |length: Option<f64>| length.unwrap_or(0.0);
     Tolerances::new(arguments.chord, or_none(arguments.min_feature), or_none(arguments.min_gap))
 }
@@ -231,25 +231,20 @@ fn say_band(report: &BandReport) {
         report.length_mm,
         report.seams.jumps
     );
-    say_found(report.min_feature, report.min_gap, &report.notes, &report.files);
+    say_found(&report.made);
 }
 
 /// What was measured, noted and written.
-pub(super) fn say_found(
-    min_feature: Option<Narrowest>,
-    min_gap: Option<Narrowest>,
-    notes: &[String],
-    files: &[String],
-) {
-    let widths = [("ink", min_feature), ("gap", min_gap)];
+pub(super) fn say_found(made: &MadeReport) {
+    let widths = [("ink", made.min_feature), ("gap", made.min_gap)];
     for (what, narrowest) in widths.iter().filter_map(|(what, n)| n.map(|n| (what, n))) {
         let p = narrowest.position_mm;
         say!("narrowest {what} {:.3} mm, at ({:.1}, {:.1}) mm", narrowest.width_mm, p.x, p.y);
     }
-    for note in notes {
+    for note in &made.notes {
         say!("note: {note}");
     }
-    for file in files {
+    for file in &made.files {
         say!("wrote {file}");
     }
 }
@@ -350,104 +345,12 @@ fn run_extrude(arguments: &ExtrudeArguments) -> Result<ExitCode, CliError> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn run_verify(arguments: &VerifyArguments) -> Result<ExitCode, CliError> {
-    let file = arguments.file.display().to_string();
-    let tolerances = tolerances(&arguments.tolerances)?;
-    let expected = Expected {
-        components: arguments.components,
-        holes: arguments.holes,
-        min_feature_mm: tolerances.min_feature_mm(),
-        min_gap_mm: tolerances.min_gap_mm(),
-    };
-    let bytes = read(&arguments.file)?;
-    let certificate = match &arguments.certificate {
-        Some(path) => Some((path.as_path(), read(path)?)),
-        None => None,
-    };
-    let replayed = |counted| replay(certificate.as_ref(), &bytes, counted);
-    let unjudged = |error| CliError::Unjudged { file: file.clone(), error };
-    let extension = arguments.file.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
-    let checked = match extension.as_str() {
-        "svg" => {
-            let report = verify::read_svg(&bytes, tolerances.chord_mm() / 4.0).map_err(unjudged)?;
-            print_verified(arguments, &report, replayed(Counted::Svg(&report))?)?;
-            report.check(&expected)
-        }
-        "stl" if expected.min_feature_mm > 0.0 || expected.min_gap_mm > 0.0 => {
-            return Err(CliError::Job(JobError::Option {
-                option: "--min-feature",
-                found: "widths are measured on drawings, not on solids".to_owned(),
-                wanted: "check the SVG of the same part, or leave out --min-feature and --min-gap".to_owned(),
-            }));
-        }
-        "stl" => {
-            let report = verify::read_stl(&bytes).map_err(unjudged)?;
-            print_verified(arguments, &report, replayed(Counted::Stl(&report))?)?;
-            report.check(&expected)
-        }
-        _ => return Err(CliError::UnknownKind { file }),
-    };
-    checked.map_err(|mismatch| CliError::Mismatch { file: file.clone(), mismatch })?;
-    Ok(ExitCode::SUCCESS)
-}
-
-fn read(path: &Path) -> Result<Vec<u8>, CliError> {
-    let file = path.display().to_string();
-    std::fs::read(path).map_err(|error| CliError::Unreadable { file, error })
-}
-
-/// Replays the certificate, if there is one.
-fn replay(
-    certificate: Option<&(&Path, Vec<u8>)>,
-    file: &[u8],
-    counted: Counted<'_>,
-) -> Result<Option<CertificateReport>, CliError> {
-    let replayed = certificate.map(|(path, report)| {
-        let name = path.display().to_string();
-        verify::replay_certificate(report, file, counted)
-            .map_err(|error| CliError::Uncertified { file: name, error })
-    });
-    replayed.transpose()
-}
-
-/// What was found in a file, and what its certificate came to.
-#[derive(serde::Serialize)]
-struct Verified<'a, R> {
-    #[serde(flatten)]
-    file: &'a R,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    certificate: Option<&'a CertificateReport>,
-}
-
-/// Prints what was found.
-///
-/// # Errors
-/// [`CliError::Refuted`] when the certificate does not hold, after that was printed.
-fn print_verified<R: serde::Serialize + std::fmt::Display>(
-    arguments: &VerifyArguments,
-    file: &R,
-    certificate: Option<CertificateReport>,
-) -> Result<(), CliError> {
-    if arguments.json {
-        print_json(&Verified { file, certificate: certificate.as_ref() })?;
-    } else {
-        print(&format!("{file}\n"))?;
-    }
-    match (certificate, &arguments.certificate) {
-        (Some(report), Some(path)) if !report.holds => {
-            Err(CliError::Refuted { file: path.display().to_string(), report: Box::new(report) })
-        }
-        (Some(report), _) if !arguments.json => print(&format!("{report}\n")),
-        _ => Ok(()),
-    }
-}
-
-fn print_json(report: &impl serde::Serialize) -> Result<(), CliError> {
+pub(super) fn print_json(report: &impl serde::Serialize) -> Result<(), CliError> {
     let text = serde_json::to_string_pretty(report).map_err(|e| CliError::Stdout(e.into()))?;
     print(&format!("{text}\n"))
 }
 
-fn print(text: &str) -> Result<(), CliError> {
+pub(super) fn print(text: &str) -> Result<(), CliError> {
     print_bytes(text.as_bytes())
 }
 

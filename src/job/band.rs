@@ -85,7 +85,7 @@ impl Band {
             if let Some(width_mm) = runs.bridge_mm {
                 let inside = bridging::inside(&map).map(|p| p + band.part.shift_mm);
                 clock.time(Stage::Bridge, || band.lay_bridges(width_mm, inside))?;
-                band.report.times.clone_from(&clock.times);
+                band.report.made.times.clone_from(&clock.times);
             }
             band.report.log10_sequences = runs.ln_sequences.map(|ln| ln / std::f64::consts::LN_10);
             band.report.drawn_exactly = runs.is_exact;
@@ -123,11 +123,12 @@ impl Band {
         self.counts = Counts::of(&self.part.region);
         let bridges = BridgesReport::new(without, bridged.bridges);
         let report = &mut self.report;
-        report.notes.push(bridges.note(self.counts));
+        report.made.notes.push(bridges.note(self.counts));
         report.closed_pattern = inside.is_some_and(|p| bridging::surrounds(&self.part.region, p));
-        report.certificate.add_bridges(&bridges.bridges, self.counts, report.closed_pattern);
+        report.made.certificate.add_bridges(&bridges.bridges, self.counts, report.closed_pattern);
         (report.components, report.holes) = (self.counts.components, self.counts.holes);
-        (report.area_mm2, report.vertices) = (self.part.region.area_mm2(), self.part.region.vertices());
+        (report.made.area_mm2, report.made.vertices) =
+            (self.part.region.area_mm2(), self.part.region.vertices());
         report.bridges = Some(bridges);
         Ok(())
     }
@@ -193,7 +194,7 @@ impl Band {
         for output in outputs {
             let item = match output.format() {
                 Format::Svg => {
-                    report.svg_segments = Some([drawing.lines, drawing.cubics]);
+                    report.made.svg_segments = Some([drawing.lines, drawing.cubics]);
                     digest(output, drawing.text.as_bytes());
                     let item = Pending::new(output.target(), drawing.text.clone().into_bytes())?;
                     if clock.time(Stage::Verify, || item.read_again())? != drawing.text.as_bytes() {
@@ -208,10 +209,10 @@ impl Band {
                     digest(output, &bytes);
                     let item = Pending::new(output.target(), bytes)?;
                     let solid = clock.time(Stage::Verify, || check_stl(output.target(), &item, &expected))?;
-                    report.triangles = Some(solid.triangles);
-                    report.shells = Some(solid.shells.len());
-                    report.genus = Some(solid.genus);
-                    report.volume_mm3 = Some(solid.volume_mm3);
+                    report.made.triangles = Some(solid.triangles);
+                    report.made.shells = Some(solid.shells.len());
+                    report.made.genus = Some(solid.genus);
+                    report.made.volume_mm3 = Some(solid.volume_mm3);
                     item
                 }
                 Format::Png => {
@@ -226,18 +227,18 @@ impl Band {
             pending.push(item);
         }
         if let Some(narrowest) = found.min_feature.filter(|n| n.width_mm < HAIRLINE_MM) {
-            report.notes.push(format!(
+            report.made.notes.push(format!(
                 "ink only {:.3} mm wide holds the band together, which hardly any machine makes; a larger --width makes it wider in proportion",
                 narrowest.width_mm
             ));
         }
-        report.certificate.seal([found.components, found.holes], digests);
+        report.made.certificate.seal([found.components, found.holes], digests);
         report.components = found.components;
         report.holes = found.holes;
-        report.min_feature = found.min_feature;
-        report.min_gap = found.min_gap;
-        report.files = outputs.iter().map(|o| name(o.target()).display().to_string()).collect();
-        report.times.extend(clock.times);
+        report.made.min_feature = found.min_feature;
+        report.made.min_gap = found.min_gap;
+        report.made.files = outputs.iter().map(|o| name(o.target()).display().to_string()).collect();
+        report.made.times.extend(clock.times);
         Ok((report, pending))
     }
 

@@ -7,7 +7,8 @@ use super::cut::Cut;
 use super::part::Part;
 use super::plan::Plan;
 use super::report::{
-    BandReport, DroppedCutReport, FallbackReport, InputReport, SeamReport, StageTime, StitchReport,
+    BandReport, DroppedCutReport, FallbackReport, InputReport, MadeReport, SeamReport, StageTime,
+    StitchReport,
 };
 use crate::domain::BandMap;
 use crate::fit::{Outline, Seam, Sides};
@@ -170,26 +171,28 @@ pub(super) fn describe(
         stitching: stitching(outline),
         search_labels: plan.labels,
         search_states: plan.states,
-        min_feature: None,
-        min_gap: None,
-        area_mm2: part.region.area_mm2(),
-        page_mm: part.page_mm.to_array(),
-        vertices: part.region.vertices(),
-        svg_segments: None,
-        triangles: None,
-        shells: None,
-        genus: None,
-        volume_mm3: None,
-        files: Vec::new(),
-        certificate: Certificate::new(
-            &cut.catalogue,
-            &plan.sequence,
-            if map.curve().is_closed() { Shape::Ring } else { Shape::Open },
-            options.goal,
-            planned,
-        ),
-        notes,
-        times,
+        made: MadeReport {
+            min_feature: None,
+            min_gap: None,
+            area_mm2: part.region.area_mm2(),
+            page_mm: part.page_mm.to_array(),
+            vertices: part.region.vertices(),
+            svg_segments: None,
+            triangles: None,
+            shells: None,
+            genus: None,
+            volume_mm3: None,
+            files: Vec::new(),
+            certificate: Certificate::new(
+                &cut.catalogue,
+                &plan.sequence,
+                if map.curve().is_closed() { Shape::Ring } else { Shape::Open },
+                options.goal,
+                planned,
+            ),
+            notes,
+            times,
+        },
     }
 }
 

@@ -39,7 +39,9 @@ mod planning;
 mod rect;
 mod rect_builder;
 mod rect_report;
+mod rect_rows;
 mod rect_search;
+mod rect_strip;
 mod rect_tile;
 mod refusal;
 mod report;
@@ -63,7 +65,8 @@ pub use rect::Rect;
 pub use rect_builder::{RectBuilder, RectJob};
 pub use rect_report::{Attempt, DirectionReport, RectReport};
 pub use report::{
-    BandReport, DroppedCutReport, FallbackReport, InputReport, SeamReport, StageTime, StitchReport,
+    BandReport, DroppedCutReport, FallbackReport, InputReport, MadeReport, SeamReport, StageTime,
+    StitchReport,
 };
 pub use stage::Stage;
 

@@ -14,7 +14,9 @@ use super::output::{Output, Target, persist};
 use super::plan::Plan;
 use super::rect_builder::RectJob;
 use super::rect_report::{DirectionReport, RectReport};
-use super::rect_search::{Found, Made, search};
+use super::rect_rows::Made;
+use super::rect_search::{Found, search};
+use super::report::MadeReport;
 use super::stage::{Clock, Stage};
 use crate::planar::Region;
 use crate::topology::{Topology, Wanted};
@@ -35,7 +37,7 @@ impl Rect {
         let found = search(job, &mut clock)?;
         let report = describe(job, &found);
         let Made { mut band, drawn, .. } = found.second;
-        band.report.times = clock.times;
+        band.report.made.times = clock.times;
         Ok(Self { band, drawn, report })
     }
 
@@ -73,18 +75,21 @@ impl Rect {
         self.band.job.check_outputs(outputs, report_file)?;
         let (found, pending) = self.band.deliver(outputs, Some(self.drawn.clone()), progress)?;
         let mut report = self.report.clone();
-        report.measured(found);
+        (report.components, report.holes) = (found.components, found.holes);
+        let notes = report.made.notes.into_iter().chain(found.made.notes).collect();
+        report.made = MadeReport { notes, ..found.made };
         persist(pending, report_file.map(|target| (target, report.to_json())))?;
         Ok(report)
     }
 }
 
 fn describe(job: &RectJob, found: &Found) -> RectReport {
-    let Found { first, second, cuts_mm: [first_cuts, second_cuts], exemplar, .. } = found;
+    let Found { first, second, cuts_mm, exemplar, .. } = found;
+    let first_report = &first.band.report;
     let options = &job.band.options;
     let made = &second.band.report;
     // Notes on the exemplar itself come with the second pass too.
-    let own = first.report.notes.iter().filter(|note| !exemplar.notes().contains(note));
+    let own = first_report.made.notes.iter().filter(|note| !exemplar.notes().contains(note));
     let notes = own.map(|note| format!("first pass: {note}")).collect();
     RectReport {
         schema_version: 1,
@@ -100,26 +105,12 @@ fn describe(job: &RectJob, found: &Found) -> RectReport {
         kept_mm: options.kept.iter().map(|k| [k.from_mm, k.to_mm]).collect(),
         thickness_mm: options.thickness_mm,
         chord_mm: job.band.tolerances.chord_mm(),
-        along_u: DirectionReport::new(&first.report, first.report.width_mm, first_cuts.clone()),
-        along_v: DirectionReport::new(made, job.size.width_mm(), second_cuts.clone()),
-        mirrored: found.mirrored,
+        along_u: DirectionReport::new(first_report, first_report.width_mm, first.cuts_mm.clone()),
+        along_v: DirectionReport::new(made, job.size.width_mm(), cuts_mm.clone()),
         tiling: second.tiling,
         bridges: made.bridges.clone(),
         attempts: found.attempts.clone(),
         chosen_attempt: found.chosen,
-        min_feature: None,
-        min_gap: None,
-        area_mm2: made.area_mm2,
-        page_mm: second.band.part.page_mm.to_array(),
-        vertices: made.vertices,
-        svg_segments: None,
-        triangles: None,
-        shells: None,
-        genus: None,
-        volume_mm3: None,
-        files: Vec::new(),
-        certificate: made.certificate.clone(),
-        notes,
-        times: Vec::new(),
+        made: MadeReport { notes, ..made.made.clone() },
     }
 }

@@ -6,13 +6,12 @@ use super::bridging::BridgesReport;
 
 use super::band::Band;
 use super::builder::BandJob;
-use super::certificate::Certificate;
 use super::error::JobError;
 use super::json;
-use super::plan::Plan;
-use super::report::{BandReport, DroppedCutReport, InputReport, SeamReport, StageTime, StitchReport};
+use super::rect_rows::Way;
+use super::report::{BandReport, DroppedCutReport, InputReport, MadeReport, SeamReport, StitchReport};
 use crate::topology::Wanted;
-use crate::verify::{Narrowest, Tiling};
+use crate::verify::Tiling;
 
 /// One of the two passes of a rectangle. Lengths are millimetres.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -101,8 +100,12 @@ pub struct Attempt {
     pub strip_holes: Option<u32>,
     /// The seed of the strip.
     pub strip_seed: Option<u64>,
-    /// Whether the mirror image of the strip stood beside it; null when there was no strip.
-    pub mirrored: Option<bool>,
+    /// The greatest misfit that joins between rows were allowed: 1 is a strand that is joined to one beside it, by the
+    /// width of the narrower, or to one twice as wide, or turns back. Null if any was, or if there was no
+    /// strip.
+    pub allowed_misfit: Option<f64>,
+    /// The greatest misfit of the joins between rows, if there was a sequence.
+    pub misfit: Option<f64>,
     /// The cost of the second pass, if it found a sequence.
     pub cost: Option<f64>,
     /// `planned`, or why it failed.
@@ -121,21 +124,20 @@ impl Attempt {
             strip_components: options.goal.components.map(Wanted::most),
             strip_holes: options.goal.holes.map(Wanted::most),
             strip_seed: options.seed,
-            mirrored: None,
+            allowed_misfit: None,
+            misfit: None,
             cost: None,
             outcome,
         }
     }
 
     /// A second pass.
-    pub(super) fn second(strip: &Band, mirrored: bool, plan: Result<&Plan, &JobError>) -> Self {
+    pub(super) fn second(strip: &Band, allowed_misfit: f64, way: Result<&Way, &JobError>) -> Self {
         Self {
-            mirrored: Some(mirrored),
-            cost: plan.ok().map(|plan| plan.cost),
-            ..Self::first(
-                &strip.job,
-                plan.err().map_or_else(|| Self::PLANNED.to_owned(), ToString::to_string),
-            )
+            allowed_misfit: Some(allowed_misfit).filter(|m| m.is_finite()),
+            misfit: way.ok().map(|way| way.misfit),
+            cost: way.ok().map(|way| way.plan.cost),
+            ..Self::first(&strip.job, way.err().map_or_else(|| Self::PLANNED.to_owned(), ToString::to_string))
         }
     }
 }
@@ -173,8 +175,6 @@ pub struct RectReport {
     pub along_u: DirectionReport,
     /// The second pass: rows of the strip along v, downwards.
     pub along_v: DirectionReport,
-    /// Whether rows were also taken from the mirror image of the strip, whose pieces come after its own.
-    pub mirrored: bool,
     /// The tiling that copies make, counted on the drawing; null when no tile was asked for.
     pub tiling: Option<Tiling>,
     /// The bridges, when the ornament alone could not give what was asked for; then the counts are with them.
@@ -183,54 +183,12 @@ pub struct RectReport {
     pub attempts: Vec<Attempt>,
     /// The one that was chosen, counted from 0.
     pub chosen_attempt: usize,
-    /// The narrowest ink, measured on the result.
-    pub min_feature: Option<Narrowest>,
-    /// The narrowest gap, measured on the result.
-    pub min_gap: Option<Narrowest>,
-    /// Ink of the part in square millimetres.
-    pub area_mm2: f64,
-    /// Width and height of the page.
-    pub page_mm: [f64; 2],
-    /// Vertices of the part's outline.
-    pub vertices: usize,
-    /// Straight segments and cubics in the SVG, if one was written.
-    pub svg_segments: Option<[usize; 2]>,
-    /// Facets of the STL, if one was written.
-    pub triangles: Option<usize>,
-    /// Shells of the STL.
-    pub shells: Option<usize>,
-    /// Total genus of the STL.
-    pub genus: Option<i64>,
-    /// Volume of the STL in cubic millimetres.
-    pub volume_mm3: Option<f64>,
-    /// The files that were written.
-    pub files: Vec<String>,
-    /// What proves the counts without trusting the search: of the second pass, whose pieces are rows.
-    pub certificate: Certificate,
-    /// What the user may want to know.
-    pub notes: Vec<String>,
-    /// Time per stage.
-    pub times: Vec<StageTime>,
+    /// What was made of it, and what was found in the files.
+    #[serde(flatten)]
+    pub made: MadeReport,
 }
 
 impl RectReport {
-    /// Takes over what was measured on the files.
-    pub(super) fn measured(&mut self, found: BandReport) {
-        self.components = found.components;
-        self.holes = found.holes;
-        self.min_feature = found.min_feature;
-        self.min_gap = found.min_gap;
-        self.svg_segments = found.svg_segments;
-        self.triangles = found.triangles;
-        self.shells = found.shells;
-        self.genus = found.genus;
-        self.volume_mm3 = found.volume_mm3;
-        self.files = found.files;
-        self.certificate = found.certificate;
-        self.notes.extend(found.notes);
-        self.times = found.times;
-    }
-
     /// The report as indented JSON, arrays on one line, ending in a line break.
     pub fn to_json(&self) -> String {
         json::indented(self)

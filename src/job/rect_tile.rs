@@ -27,7 +27,7 @@ const TOUCH: f64 = 1e-6;
 const UNIT: f64 = 1.0 / 60.0;
 
 /// Regions side by side, left to right, with a gap between them.
-pub(super) fn side_by_side(regions: &[&Region]) -> Region {
+fn side_by_side(regions: &[&Region]) -> Region {
     let grid = regions[0].grid();
     let sizes = regions.iter().filter_map(|r| r.bounds_mm()).map(|(low, high)| high - low);
     let gap = grid.steps(GAP * sizes.map(DVec2::max_element).fold(0.0, f64::max));
@@ -42,16 +42,14 @@ pub(super) fn side_by_side(regions: &[&Region]) -> Region {
     Region::from_contours(grid, contours).expect("regions that stand apart do not meet")
 }
 
-/// `region` split along one of `cuts`, with its parts in each other's place and `between` them if given, and where
-/// `kept` ranges of it are then. `choice` 0 is
-/// the cut through the fewest strands in the middle of the region: nearer to its ends there are only tips, which a
+/// `region` split along one of `cuts`, with its parts in each other's place, and where `kept` ranges of it are then.
+/// `choice` 0 is the cut through the fewest strands in the middle of the region: nearer to its ends there are only tips, which a
 /// split would set free. 1 is the next best, and so on.
 ///
 /// # Errors
 /// [`JobError::Refused`] when there is no such cut.
 pub(super) fn opened(
     region: &Region,
-    between: Option<&Region>,
     cuts: &[reeb::Cut],
     choice: usize,
     kept: &[KeptRange],
@@ -70,8 +68,7 @@ pub(super) fn opened(
     let (x_mm, [left, right]) = cuts.iter().skip(choice).find_map(split).ok_or_else(|| {
         JobError::Refused("a tile joins its copies where the exemplar is cut, and no cut crosses its ink; try --slicing uniform:T, or leave out --tile".to_owned())
     })?;
-    let parts: Vec<&Region> = [Some(&right), between, Some(&left)].into_iter().flatten().collect();
-    let opened = side_by_side(&parts);
+    let opened = side_by_side(&[&right, &left]);
     let end_mm = opened.bounds_mm().unwrap_or_default().1.x;
     // No cut is inside a kept range. What was left of the cut ends where the whole ends now.
     let moved = kept.iter().map(|range| {

@@ -158,6 +158,14 @@ pub struct BandReport {
     pub search_labels: usize,
     /// States of the automaton that it met.
     pub search_states: usize,
+    /// What was made of it, and what was found in the files.
+    #[serde(flatten)]
+    pub made: MadeReport,
+}
+
+/// The part and its files, in a report. Lengths are millimetres.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MadeReport {
     /// The narrowest ink, measured on the result.
     pub min_feature: Option<Narrowest>,
     /// The narrowest gap, measured on the result.
@@ -180,7 +188,7 @@ pub struct BandReport {
     pub volume_mm3: Option<f64>,
     /// The files that were written.
     pub files: Vec<String>,
-    /// What proves the counts without trusting the search.
+    /// What proves the counts without trusting the search; of a rectangle, that of its second pass, whose pieces are rows.
     pub certificate: Certificate,
     /// What the user may want to know.
     pub notes: Vec<String>,

@@ -8,6 +8,7 @@ use thiserror::Error;
 use super::cut_up::cut_up;
 use super::mirror::mirrored;
 use super::piece::{Endpoint, Piece};
+use super::seam::{Side, misfit, weakness};
 use crate::planar::Region;
 use crate::reeb::Cut;
 use crate::topology::Descriptor;
@@ -24,6 +25,14 @@ pub struct CostWeights {
     /// The cost of a join that moves the run up or down by the exemplar's height; it grows with the square. The
     /// paper has no such term and leaves bands that climb to the fit; 0 is the paper.
     pub rise: f64,
+    /// The cost of a jump whose worst strand has the misfit 1 (see [`Join::misfit`]); it grows with the square. The
+    /// paper has no such term; 0 is the paper.
+    pub misfit: f64,
+    /// Jumps with a greater misfit are left out. The paper leaves none out: infinite.
+    pub worst_misfit: f64,
+    /// The cost of a jump where the seam hangs by a hair (see [`Join::weakness`]). The paper has no such term; 0 is the
+    /// paper.
+    pub weakness: f64,
     /// How many successors of each piece are kept: the cheapest, and always the exemplar's own next piece. With
     /// mirrored pieces, so many of its own orientation and so many of the other, so that none is lost to them.
     pub successors: usize,
@@ -43,7 +52,15 @@ pub struct CostWeightsError {
 
 impl Default for CostWeights {
     fn default() -> Self {
-        Self { alpha: 0.8, jump: 1.0, rise: 50.0, successors: 16 }
+        Self {
+            alpha: 0.8,
+            jump: 1.0,
+            rise: 50.0,
+            misfit: 0.0,
+            worst_misfit: f64::INFINITY,
+            weakness: 0.0,
+            successors: 16,
+        }
     }
 }
 
@@ -68,11 +85,17 @@ impl CostWeights {
 pub struct Join {
     /// The successor.
     pub to: usize,
-    /// D(i, j) of Zhou 2014 §3.6.1, what the rise costs, and λ if this is a jump.
+    /// D(i, j) of Zhou 2014 §3.6.1, what the rise costs, and λ and what misfit and weakness cost if this is a jump.
     pub cost: f64,
     /// The vertical offset τ that aligns the successor best, in millimetres: added to the offset of the piece
     /// it gives the successor's.
     pub rise_mm: f64,
+    /// How badly the worst strand fits: 0 where all go straight on, and 1 where one lies beside the other by the width
+    /// of the narrower, is twice as wide, or turns back. The reflection of a side has at most 1.
+    pub misfit: f64,
+    /// How weak the seam is: 0 where much ink holds it and nothing beside it is narrow, 1 where it hangs by a hair, 2
+    /// where the cut also leaves a sliver of a strand over.
+    pub weakness: f64,
     /// Whether the successor is the exemplar's own next piece.
     pub is_natural: bool,
 }
@@ -136,9 +159,12 @@ impl Catalogue {
             height_mm: size.y,
             own_ends_only: false,
         };
-        let scale = Scale { unit_mm: size.max_element() / REFERENCE_MM, height_mm: size.y };
-        catalogue.joins =
-            (0..catalogue.pieces.len()).map(|from| catalogue.joins_from(from, scale, weights)).collect();
+        let scale = Scale { longer_mm: size.max_element(), height_mm: size.y };
+        let lefts: Vec<Side<'_>> = catalogue.pieces.iter().map(Side::left).collect();
+        let joins = catalogue.pieces.iter().enumerate();
+        let joins =
+            joins.map(|(from, piece)| catalogue.joins_from(from, Side::right(piece), &lefts, scale, weights));
+        catalogue.joins = joins.collect();
         catalogue
     }
 
@@ -218,16 +244,23 @@ impl Catalogue {
         self.height_mm
     }
 
-    fn joins_from(&self, from: usize, scale: Scale, weights: &CostWeights) -> Vec<Join> {
-        let pieces = &self.pieces;
-        let right = &pieces[from].right;
+    fn joins_from(
+        &self,
+        from: usize,
+        side: Side<'_>,
+        lefts: &[Side<'_>],
+        scale: Scale,
+        weights: &CostWeights,
+    ) -> Vec<Join> {
+        let right = side.endpoints();
         let natural = self.natural_next(from);
         // A piece after itself is the shortest of the degenerate cycles; slicing by events never allows it
         // (Zhou 2014 §5.2), uniform slicing would.
-        let fits = |&to: &usize| to != from && pieces[to].left.len() == right.len();
+        let fits = |&to: &usize| to != from && lefts[to].portals() == side.portals();
         let join = |to: usize| {
             let is_natural = natural == Some(to);
-            let (cost, rise_mm) = join_cost(right, &pieces[to].left, scale.unit_mm, weights.alpha);
+            let left = lefts[to].endpoints();
+            let (cost, rise_mm) = join_cost(right, left, scale.unit_mm(), weights.alpha);
             // An empty join inside the exemplar is one of its own gaps; at its ends it is a break that the
             // exemplar does not have.
             let is_break = right.is_empty() && (self.is_own_end(from) || self.is_own_begin(to));
@@ -240,10 +273,16 @@ impl Catalogue {
             };
             let jump = weights.jump * jumps;
             let rise = weights.rise * (rise_mm / scale.height_mm).powi(2);
-            Join { to, cost: cost + jump + rise, rise_mm, is_natural }
+            let (misfit, weakness) = match is_natural {
+                true => (0.0, 0.0),
+                false => (misfit(right, left), weakness(side, lefts[to], scale.longer_mm, scale.height_mm)),
+            };
+            let seam = weights.misfit * misfit.powi(2) + weights.weakness * weakness;
+            Join { to, cost: cost + jump + rise + seam, rise_mm, misfit, weakness, is_natural }
         };
+        let is_allowed = |join: &Join| join.misfit <= weights.worst_misfit;
         let of_one_orientation = |range: Range<usize>| {
-            let mut joins: Vec<Join> = range.filter(fits).map(join).collect();
+            let mut joins: Vec<Join> = range.filter(fits).map(join).filter(is_allowed).collect();
             joins.sort_by(Join::order);
             let natural = joins.iter().position(|j| j.is_natural);
             if let Some(late) = natural.filter(|&at| at >= weights.successors) {
@@ -253,7 +292,7 @@ impl Catalogue {
             joins
         };
         let mut joins = of_one_orientation(0..self.originals);
-        joins.extend(of_one_orientation(self.originals..pieces.len()));
+        joins.extend(of_one_orientation(self.originals..lefts.len()));
         joins.sort_by(Join::order);
         joins
     }
@@ -269,10 +308,16 @@ impl Join {
 /// What positions are measured in.
 #[derive(Clone, Copy)]
 struct Scale {
-    /// 1/60 of the exemplar's longer side.
-    unit_mm: f64,
+    /// The exemplar's longer side.
+    longer_mm: f64,
     /// The exemplar's height.
     height_mm: f64,
+}
+
+impl Scale {
+    fn unit_mm(self) -> f64 {
+        self.longer_mm / REFERENCE_MM
+    }
 }
 
 /// α d_match + (1 − α) d_tangent and the best offset τ (Zhou 2014 §3.6.1).

@@ -12,6 +12,7 @@ mod catalogue;
 mod cut_up;
 mod mirror;
 mod piece;
+mod seam;
 
 pub use catalogue::{Catalogue, CostWeights, CostWeightsError, Join, Origin};
 pub use piece::{Chain, End, Endpoint, Piece};

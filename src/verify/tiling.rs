@@ -6,6 +6,8 @@
 //! united where they meet. That much is known without a copy; then four copies *are* set together, united and
 //! counted, and must have the χ that follows.
 
+use std::fmt;
+
 use glam::DVec2;
 use serde::Serialize;
 use thiserror::Error;
@@ -32,12 +34,29 @@ pub struct Tiling {
     pub four_holes: usize,
 }
 
+impl fmt::Display for Tiling {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { pitch_mm: pitch, joins_across, joins_up, components, holes, four_components, four_holes } =
+            self;
+        writeln!(
+            f,
+            "tile         {:.3} x {:.3} mm, joins {joins_across} across, {joins_up} up",
+            pitch.x, pitch.y
+        )?;
+        writeln!(f, "tiling       {components} component(s) and {holes} hole(s) for each tile")?;
+        write!(f, "2 x 2 tiles  {four_components} component(s), {four_holes} hole(s)")
+    }
+}
+
 /// Why copies do not join.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum TilingFault {
     /// There is no ink.
     #[error("there is no ink to join")]
     Empty,
+    /// No ink lies along any side.
+    #[error("copies do not join: no ink lies along a side of the tile")]
+    Apart,
     /// Two opposite sides differ.
     #[error("copies do not join: ink at ({:.3}, {:.3}) mm has none to meet on the {opposite} side", position_mm.x, position_mm.y)]
     Side {
@@ -95,6 +114,9 @@ pub fn tiling(tile: &Region) -> Result<Tiling, TilingFault> {
         }
     }
     let (joins_across, joins_up) = (sides[0].0.len(), sides[1].0.len());
+    if joins_across + joins_up == 0 {
+        return Err(TilingFault::Apart);
+    }
     let components = (0..owner.len()).filter(|&part| owner[part] == part).count();
     let euler = euler(tile);
     let pitch = GridPoint::new(high.x - low.x, high.y - low.y);
@@ -204,6 +226,12 @@ mod tests {
     fn sides_that_differ_are_named() {
         let found = tiling(&tile(&[(0, 40, 100, 20), (90, 50, 10, 30), (30, 0, 30, 80)]));
         assert!(matches!(found, Err(TilingFault::Side { opposite: "right", .. })), "{found:?}");
+        // Round: it touches its sides in points only.
+        let step = 10_000_000;
+        let diamond =
+            [(50, 0), (100, 50), (50, 100), (0, 50)].map(|(x, y)| GridPoint::new(x * step, y * step));
+        let diamond = Region::fill(Grid::for_extent(100.0).unwrap(), &[diamond.to_vec()], FillRule::NonZero);
+        assert_eq!(tiling(&diamond), Err(TilingFault::Apart));
         assert_eq!(tiling(&Region::empty(Grid::for_extent(1.0).unwrap())), Err(TilingFault::Empty));
     }
 }
