@@ -104,7 +104,7 @@ impl Cheapest<'_> {
             let most = self.effort_limit(automaton);
             let patience = self.patience().map_or(most, |effort| most.min(self.effort_before + effort));
             // Of a step that is as small as it can be, nothing can be taken back.
-            let is_leap = self.threshold > self.floor + STEP_BACK;
+            let is_leap = self.threshold > self.floor.saturating_add(STEP_BACK);
             let leap =
                 if is_leap { self.effort + ((LEAP * self.last).max(SHORT) << leaps) } else { usize::MAX };
             let before = Standing { effort: self.effort, floor: self.floor };
@@ -140,7 +140,7 @@ impl Cheapest<'_> {
             }
             self.floor = self.floor.max(round.beyond.least());
             // Where many estimates lie close together, steps grow all the same.
-            let step = 2 * (self.threshold - before.floor);
+            let step = self.threshold.saturating_sub(before.floor).saturating_mul(2);
             let next = round.beyond.next((self.last / LABELS_PER_RUN).max(FEW));
             self.threshold = next.max(self.floor.saturating_add(step).min(NEVER - 1));
             if self.patience().is_some_and(|effort| self.effort > self.effort_before + effort) {
