@@ -65,8 +65,8 @@ pub(super) fn lay(
     let mut hard = BTreeSet::new();
     let mut done = 0;
     // Windows have the counts of the whole but for the rounding of their borders. Should that ever make a
-    // difference, the whole is counted after each bridge.
-    let mut careful = false;
+    // difference, the bridge that makes it is looked for and not laid again.
+    let mut banned = Vec::new();
     for _ in 0..MOST_ROUNDS {
         let site = Site::new(&ground, side, width_mm, options);
         let mut layer = Layer {
@@ -75,10 +75,11 @@ pub(super) fn lay(
             kind,
             needed,
             has,
-            careful,
+            banned: &banned,
             extent_mm: low.distance(high),
             done: 0,
             bridges: Vec::new(),
+            laid: Vec::new(),
         };
         let mut left = Vec::new();
         if kind == BridgeKind::Join || kind == BridgeKind::Open {
@@ -97,13 +98,11 @@ pub(super) fn lay(
             }
             continue;
         }
-        let built = layer.site.built();
+        let built = layer.site.built(usize::MAX);
         if Counts::of(&built) == kind.changed(has, needed) {
             return Ok(Bridged { region: built, bridges: layer.bridges });
         }
-        if std::mem::replace(&mut careful, true) {
-            break;
-        }
+        banned.push(layer.bridges[layer.first_wrong()].corners_mm);
     }
     Err(BridgeError::NoPlace { kind, done, needed, width_mm })
 }
@@ -119,12 +118,14 @@ struct Layer<'a> {
     kind: BridgeKind,
     needed: usize,
     has: Counts,
-    /// Whether the whole is counted after each bridge.
-    careful: bool,
+    /// The corners of bridges that must not be laid.
+    banned: &'a [[[f64; 2]; 4]],
     extent_mm: f64,
     /// By how many the count has been changed.
     done: usize,
     bridges: Vec<Bridge>,
+    /// After each bridge: how many outlines there are, and by how many the count has been changed.
+    laid: Vec<(usize, usize)>,
 }
 
 impl Layer<'_> {
@@ -258,15 +259,28 @@ impl Layer<'_> {
         self.site.try_out(&place.corners, purpose)
     }
 
-    /// Lays a bridge; `false` when the whole was counted and the bridge taken up again.
+    /// The first bridge after which the whole has not the counts that its window had; that the last is one is known.
+    fn first_wrong(&self) -> usize {
+        let (mut right, mut wrong) = (0, self.laid.len());
+        while wrong - right > 1 {
+            let middle = right.midpoint(wrong);
+            let (outlines, done) = self.laid[middle - 1];
+            let built = self.site.built(outlines);
+            let is_right = Counts::of(&built) == self.kind.changed(self.has, done);
+            *if is_right { &mut right } else { &mut wrong } = middle;
+        }
+        right
+    }
+
+    /// Lays a bridge; `false` when it is banned.
     fn lay(&mut self, place: &Place, verdict: &Verdict, least_mm: f64) -> bool {
-        self.site.lay(&place.corners, &verdict.pockets);
-        let wanted = self.kind.changed(self.has, self.done + verdict.changes);
-        if self.careful && Counts::of(&self.site.built()) != wanted {
-            self.site.take_up(verdict.pockets.len());
+        let corners_mm = place.corners.map(|p| p.to_array());
+        if self.banned.contains(&corners_mm) {
             return false;
         }
+        let outlines = self.site.lay(&place.corners, &verdict.pockets);
         self.done += verdict.changes;
+        self.laid.push((outlines, self.done));
         self.bridges.push(Bridge {
             kind: self.kind,
             changes: verdict.changes,
@@ -276,7 +290,7 @@ impl Layer<'_> {
             length_mm: place.length_mm(),
             least_mm,
             area_mm2: verdict.area_mm2,
-            corners_mm: place.corners.map(|p| p.to_array()),
+            corners_mm,
             pockets_mm: verdict.pockets.iter().map(|path| self.in_mm(path)).collect(),
         });
         true

@@ -104,22 +104,18 @@ impl<'a> Site<'a> {
         Self { ground, side, width_mm, erosion_mm, dilation_mm, least_mm, laid: Vec::new() }
     }
 
-    /// Lays a bridge and fills its pockets.
-    pub(super) fn lay(&mut self, corners: &[DVec2; 4], pockets: &[Vec<GridPoint>]) {
+    /// Lays a bridge and fills its pockets; how many outlines there are then.
+    pub(super) fn lay(&mut self, corners: &[DVec2; 4], pockets: &[Vec<GridPoint>]) -> usize {
         let grid = self.ground.grid;
         self.laid.push(self.on_grid(corners));
         self.laid.extend(pockets.iter().map(|path| Laid::new(grid, path.clone())));
+        self.laid.len()
     }
 
-    /// Takes up the bridge that was laid last, with so many pockets.
-    pub(super) fn take_up(&mut self, pockets: usize) {
-        self.laid.truncate(self.laid.len() - 1 - pockets);
-    }
-
-    /// The region with everything that was laid.
-    pub(super) fn built(&self) -> Region {
+    /// The region with as many of the outlines that were laid.
+    pub(super) fn built(&self, outlines: usize) -> Region {
         let ink = self.ground.rims.iter().map(|rim| rim.steps.clone());
-        let laid = self.laid.iter().map(|laid| match self.side {
+        let laid = self.laid.iter().take(outlines).map(|laid| match self.side {
             Side::Gap => laid.path.clone(),
             Side::Ink => laid.path.iter().rev().copied().collect(),
         });
