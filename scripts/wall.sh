@@ -10,7 +10,7 @@
 # it as you like, and take another OUT_DIR for another build.
 #
 #   DOMAINS   what to run, of "line circle heart rect" (all)
-#   SECONDS_EACH   a run that takes longer has failed (120)
+#   SECONDS_EACH   a run that keeps a processor longer has failed (120)
 #   JOBS   runs at a time (2)
 set -euo pipefail
 if [ $# -lt 2 ]; then
@@ -29,7 +29,7 @@ mkdir -p "$out"
 out=$(realpath "$out")
 
 run() { # EXEMPLAR DOMAIN TARGET BRIDGE: one piece of the wall; leaves NAME.svg or NAME.log, and NAME.exit
-  local name domain target options start status
+  local name domain target options status
   name=$(basename "$1" .svg)-$2-$3-$4
   if [ -e "$out/$name.exit" ]; then return; fi
   case $2 in
@@ -44,15 +44,25 @@ run() { # EXEMPLAR DOMAIN TARGET BRIDGE: one piece of the wall; leaves NAME.svg 
     twelve-holes) target="--holes 12" ;;
     any) target="" ;;
   esac
+  status=0
   options="--memory-limit 256MB --quiet"
   [ "$4" = bridged ] && options="$options --bridge 0.8mm"
-  start=$(date +%s.%N)
-  status=0
-  # shellcheck disable=SC2086
-  timeout "$limit" target/release/openwork $domain $target $options -o "$out/$name.svg" \
-    --report "$out/$name.json" 2> "$out/$name.log" || status=$?
-  if [ "$status" = 124 ]; then echo "not done after $limit s" > "$out/$name.log"; fi
-  echo "$status $(awk -v a="$start" -v b="$(date +%s.%N)" 'BEGIN { printf "%.1f", b - a }')" > "$out/$name.tmp"
+  # The time of the processor, so that what else the machine does changes nothing.
+  local TIMEFORMAT='%U'
+  {
+    time (
+      ulimit -t "$limit"
+      # shellcheck disable=SC2086
+      target/release/openwork $domain $target $options -o "$out/$name.svg" --report "$out/$name.json" \
+        2> "$out/$name.log"
+    )
+  } 2> "$out/$name.seconds" || status=$?
+  if [ "$status" = 152 ] || [ "$status" = 137 ]; then
+    status=124
+    echo "not done after $limit s" > "$out/$name.log"
+  fi
+  echo "$status $(tail -n 1 "$out/$name.seconds")" > "$out/$name.tmp"
+  rm "$out/$name.seconds"
   # The result counts once it is whole.
   mv "$out/$name.tmp" "$out/$name.exit"
   echo "$name: exit $(cat "$out/$name.exit") s" >&2
@@ -104,7 +114,7 @@ cat <<INTRO
 
 Every exemplar × {line 240 mm, circle 80 mm, heart, rectangle 120 x 80 mm} × {one component; one component and no
 holes; twelve holes; any}, without bridges and, where that was refused, with \`--bridge 0.8mm\`. Every search has
-256 MB, and what takes longer than $limit s has failed. *Verified* files were read again and counted when they were
+256 MB, and what keeps a processor for more than $limit s has failed. *Verified* files were read again and counted when they were
 written: components (c) and holes (h).
 
 Command: \`scripts/wall.sh OUT_DIR EXEMPLAR.svg... > docs/wall.md\`. Real ornaments are TeX packages under the LPPL
