@@ -12,11 +12,11 @@ use divan::{Bencher, black_box};
 use glam::DVec2;
 use openwork::domain::{BandMap, CurveSpec, PlanarCurve};
 use openwork::exemplar::{Exemplar, Limits, ReadOptions};
-use openwork::fabricate::snapped_to_f32;
+use openwork::fabricate::{BridgeOptions, Counts, bridge, snapped_to_f32};
 use openwork::fit::{FitOptions, Outline, Sides, StitchMethod};
 use openwork::job::{Band, BandBuilder, DEFAULT_MEMORY_LIMIT, Output, Plan, PlanOptions, plan};
 use openwork::pieces::{Catalogue, CostWeights};
-use openwork::planar::{Contour, Grid, Region, Tolerances};
+use openwork::planar::{Contour, FillRule, Grid, GridPoint, Region, Tolerances};
 use openwork::reeb::{ReebGraph, Slicing, SlicingRule};
 use openwork::topology::{Goal, Shape};
 use openwork::verify;
@@ -163,6 +163,42 @@ fn map_and_snap(bencher: Bencher, case: Case) {
     let plan = solve(&catalogue, Shape::Ring, case.length_mm);
     let outline = fit(&catalogue, &plan, case.length_mm);
     bencher.bench(|| map(black_box(&outline), case.length_mm));
+}
+
+/// Rings in rows, of 100,000 vertices together: each an island with a hole, waved so that nothing is quite regular.
+fn field() -> Region {
+    const COLUMNS: usize = 25;
+    const ROWS: usize = 20;
+    const VERTICES: usize = 100;
+    let grid = Grid::for_extent(256.0).expect("the extent is in range");
+    let paths = (0..COLUMNS * ROWS * 2).map(|i| {
+        let (ring, is_hole) = (i / 2, i % 2 == 1);
+        let middle = DVec2::new((ring % COLUMNS) as f64, (ring / COLUMNS) as f64) * 10.0 + 5.0;
+        let radius = if is_hole { 2.5 } else { 4.0 };
+        let at = |k: usize| {
+            let turn = 2.0 * PI * k as f64 / VERTICES as f64;
+            let wave = 1.0 + 0.1 * (5.0 * turn + ring as f64).sin();
+            let p = middle + DVec2::from_angle(turn) * radius * wave;
+            grid.snap(p).expect("the field lies on the grid")
+        };
+        (0..VERTICES).map(at).collect::<Vec<GridPoint>>()
+    });
+    Region::fill(grid, &paths.collect::<Vec<_>>(), FillRule::EvenOdd)
+}
+
+/// Bridges of 100,000 vertices: 499 struts that make one component, and 500 slits more that leave no hole.
+#[divan::bench(args = [500, 0], sample_count = 3)]
+fn bridge_to_one_component_and_so_many_holes(bencher: Bencher, holes: usize) {
+    let field = field();
+    let wanted = Counts { components: 1, holes };
+    let options = BridgeOptions {
+        width_mm: 0.8,
+        min_feature_mm: 0.4,
+        min_gap_mm: 0.2,
+        chord_mm: CHORD_MM,
+        closed_around: None,
+    };
+    bencher.bench(|| bridge(black_box(&field), wanted, &options).expect("there is room for every bridge"));
 }
 
 #[divan::bench(args = cases(), sample_count = 10)]

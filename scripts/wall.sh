@@ -6,23 +6,32 @@
 #
 # OUT_DIR keeps every drawing and report that was written, and wall.png, the contact sheet of what is in one
 # component. With bridges only what was refused without them is run again, as everything else comes out the
-# same. It takes a while, and is no part of the tests.
+# same. It takes a while, and is no part of the tests. What OUT_DIR has already is not run again: stop it and start
+# it as you like, and take another OUT_DIR for another build.
+#
+#   DOMAINS   what to run, of "line circle heart rect" (all)
+#   SECONDS_EACH   a run that keeps a processor longer has failed (120)
+#   JOBS   runs at a time (2)
 set -euo pipefail
 if [ $# -lt 2 ]; then
-  sed -n '2,9p' "$0" >&2
+  sed -n '2,15p' "$0" >&2
   exit 0
 fi
 out=$1
 shift
 exemplars=$(realpath "$@")
+domains=${DOMAINS:-line circle heart rect}
+limit=${SECONDS_EACH:-120}
+jobs=${JOBS:-2}
 cd "$(dirname "$0")/.."
 cargo build --release --locked --quiet --bin openwork --example contact_sheet
 mkdir -p "$out"
 out=$(realpath "$out")
 
 run() { # EXEMPLAR DOMAIN TARGET BRIDGE: one piece of the wall; leaves NAME.svg or NAME.log, and NAME.exit
-  local name domain target options start status
+  local name domain target options status
   name=$(basename "$1" .svg)-$2-$3-$4
+  if [ -e "$out/$name.exit" ]; then return; fi
   case $2 in
     line) domain="band $1 --along line:240mm --width 20mm" ;;
     circle) domain="band $1 --along circle:80mm --width 20mm" ;;
@@ -35,31 +44,50 @@ run() { # EXEMPLAR DOMAIN TARGET BRIDGE: one piece of the wall; leaves NAME.svg 
     twelve-holes) target="--holes 12" ;;
     any) target="" ;;
   esac
+  status=0
   options="--memory-limit 256MB --quiet"
   [ "$4" = bridged ] && options="$options --bridge 0.8mm"
-  start=$(date +%s.%N)
-  status=0
-  # shellcheck disable=SC2086
-  target/release/openwork $domain $target $options -o "$out/$name.svg" --report "$out/$name.json" \
-    2> "$out/$name.log" || status=$?
-  echo "$status $(awk -v a="$start" -v b="$(date +%s.%N)" 'BEGIN { printf "%.1f", b - a }')" > "$out/$name.exit"
+  # The time of the processor, so that what else the machine does changes nothing.
+  local TIMEFORMAT='%U'
+  {
+    time (
+      ulimit -t "$limit"
+      # shellcheck disable=SC2086
+      target/release/openwork $domain $target $options -o "$out/$name.svg" --report "$out/$name.json" \
+        2> "$out/$name.log"
+    )
+  } 2> "$out/$name.seconds" || status=$?
+  if [ "$status" = 152 ] || [ "$status" = 137 ]; then
+    status=124
+    echo "not done after $limit s" > "$out/$name.log"
+  fi
+  echo "$status $(tail -n 1 "$out/$name.seconds")" > "$out/$name.tmp"
+  rm "$out/$name.seconds"
+  # The result counts once it is whole.
+  mv "$out/$name.tmp" "$out/$name.exit"
+  echo "$name: exit $(cat "$out/$name.exit") s" >&2
 }
 export -f run
-export out
+export out limit
 
 for exemplar in $exemplars; do
-  for domain in line circle heart rect; do
+  for domain in $domains; do
     for target in one one-no-holes twelve-holes any; do
       echo "$exemplar $domain $target plain"
     done
   done
 done > "$out/runs.txt"
-xargs -P 2 -L 1 bash -c 'run "$@"' _ < "$out/runs.txt"
+xargs -P "$jobs" -L 1 bash -c 'run "$@"' _ < "$out/runs.txt"
+
+outcome() { # EXEMPLAR DOMAIN TARGET BRIDGE: the exit code, or nothing
+  local file
+  file=$out/$(basename "$1" .svg)-$2-$3-$4.exit
+  if [ -e "$file" ]; then cut -d ' ' -f 1 "$file"; fi
+}
 while read -r exemplar domain target _; do
-  read -r status _ < "$out/$(basename "$exemplar" .svg)-$domain-$target-plain.exit"
-  if [ "$status" = 3 ]; then echo "$exemplar $domain $target bridged"; fi
+  if [ "$(outcome "$exemplar" "$domain" "$target" plain)" = 3 ]; then echo "$exemplar $domain $target bridged"; fi
 done < "$out/runs.txt" > "$out/again.txt"
-xargs -P 2 -L 1 bash -c 'run "$@"' _ < "$out/again.txt"
+xargs -r -P "$jobs" -L 1 bash -c 'run "$@"' _ < "$out/again.txt"
 
 told() { # NAME: the outcome in a cell of the table
   [ -e "$out/$1.exit" ] || { echo "as before"; return; }
@@ -73,23 +101,28 @@ told() { # NAME: the outcome in a cell of the table
   esac
 }
 
-count() { # STATUS PATTERN: how many ended so
-  cat "$out"/*-"$2".exit 2> /dev/null | awk -v s="$1" '$1 == s' | wc -l
+# What is listed may be less than what OUT_DIR keeps: only what is listed counts.
+while read -r exemplar domain target way; do
+  echo "$way $target $(outcome "$exemplar" "$domain" "$target" "$way")"
+done < <(cat "$out/runs.txt" "$out/again.txt") > "$out/outcomes.txt"
+count() { # PATTERN: how many outcomes match
+  grep -cE "$1" "$out/outcomes.txt" || true
 }
-failed=$(cat "$out"/*.exit | awk '$1 != 0 && $1 != 3' | wc -l)
 
 cat <<INTRO
 # The wall of ornaments
 
 Every exemplar × {line 240 mm, circle 80 mm, heart, rectangle 120 x 80 mm} × {one component; one component and no
 holes; twelve holes; any}, without bridges and, where that was refused, with \`--bridge 0.8mm\`. Every search has
-256 MB. *Verified* files were read again and counted when they were written: components (c) and holes (h).
+256 MB, and what keeps a processor for more than $limit s has failed. *Verified* files were read again and counted when they were
+written: components (c) and holes (h).
 
 Command: \`scripts/wall.sh OUT_DIR EXEMPLAR.svg... > docs/wall.md\`. Real ornaments are TeX packages under the LPPL
 (pgfornament, pgfornament-han, niceframe), not kept in this repository; the others are in \`fixtures/exemplars\`.
 
-Without bridges $(count 0 plain) verified, $(count 3 plain) refused; of these with bridges $(count 0 bridged) verified,
-$(count 3 bridged) refused, of which $(cat "$out"/*-one-bridged.exit 2> /dev/null | awk '$1 == 3' | wc -l) for one component. Failed: $failed.
+Without bridges $(count '^plain .* 0$') verified, $(count '^plain .* 3$') refused; of these with bridges
+$(count '^bridged .* 0$') verified, $(count '^bridged .* 3$') refused, of which $(count '^bridged one 3$') for one component.
+Failed: $(grep -cvE ' [03]$' "$out/outcomes.txt" || true).
 
 | exemplar | where | target | without bridges | with bridges |
 |---|---|---|---|---|
@@ -101,7 +134,7 @@ done < "$out/runs.txt"
 
 sheet=()
 for exemplar in $exemplars; do
-  for domain in line circle heart rect; do
+  for domain in $domains; do
     for way in plain bridged; do
       file=$out/$(basename "$exemplar" .svg)-$domain-one-$way.svg
       if [ -e "$file" ]; then sheet+=("$file"); fi

@@ -1,5 +1,7 @@
 //! Laying bridges of one kind: the shortest first, each where it is best.
 
+use std::collections::BTreeSet;
+
 use super::ground::Ground;
 use super::links::{Link, links};
 use super::place::{Place, Prober};
@@ -40,6 +42,8 @@ const FIRST_REACH: f64 = 4.0;
 const GOOD_GRADE: usize = 1;
 /// After so many places in a row that would not do, there is none: more would only take longer to say so.
 const MOST_FAILURES: usize = 400;
+/// How often all bridges of a kind are laid anew: what found no place is then joined first, while there is room.
+const MOST_ROUNDS: usize = 8;
 /// Middles of bridges closer than this, in widths, would overlap.
 const BESIDE: f64 = 1.2;
 
@@ -57,37 +61,50 @@ pub(super) fn lay(
     let width_mm = options.width_mm.max(SPARE * machine_mm);
     let prober = Prober { ground: &ground, index: &index, side, width_mm };
     let (low, high) = region.bounds_mm().unwrap_or_default();
+    let has = Counts::of(region);
+    let mut hard = BTreeSet::new();
+    let mut done = 0;
     // Windows have the counts of the whole but for the rounding of their borders. Should that ever make a
-    // difference, the whole is counted after each bridge.
-    for careful in [false, true] {
+    // difference, the bridge that makes it is looked for and not laid again.
+    let mut banned = Vec::new();
+    for _ in 0..MOST_ROUNDS {
         let site = Site::new(&ground, side, width_mm, options);
-        let has = Counts::of(region);
         let mut layer = Layer {
             prober,
             site,
             kind,
             needed,
             has,
-            careful,
+            banned: &banned,
             extent_mm: low.distance(high),
             done: 0,
             bridges: Vec::new(),
+            laid: Vec::new(),
         };
+        let mut left = Vec::new();
         if kind == BridgeKind::Join || kind == BridgeKind::Open {
             let apart = options.closed_around.filter(|_| kind == BridgeKind::Open);
-            layer.join(apart.map(|p| [0, ground.face_of(region, nearest_step(region.grid(), p))]));
+            let apart = apart.map(|p| [0, ground.face_of(region, nearest_step(region.grid(), p))]);
+            left = layer.join(apart, &hard);
         } else {
             layer.close();
         }
         if !layer.is_done() {
-            return Err(BridgeError::NoPlace { kind, done: layer.done, needed, width_mm });
+            done = layer.done.max(done);
+            let known = hard.len();
+            hard.extend(left);
+            if hard.len() == known {
+                break;
+            }
+            continue;
         }
-        let built = layer.site.built();
+        let built = layer.site.built(usize::MAX);
         if Counts::of(&built) == kind.changed(has, needed) {
             return Ok(Bridged { region: built, bridges: layer.bridges });
         }
+        banned.push(layer.bridges[layer.first_wrong()].corners_mm);
     }
-    Err(BridgeError::NoPlace { kind, done: 0, needed, width_mm })
+    Err(BridgeError::NoPlace { kind, done, needed, width_mm })
 }
 
 fn nearest_step(grid: Grid, p: glam::DVec2) -> GridPoint {
@@ -101,12 +118,14 @@ struct Layer<'a> {
     kind: BridgeKind,
     needed: usize,
     has: Counts,
-    /// Whether the whole is counted after each bridge.
-    careful: bool,
+    /// The corners of bridges that must not be laid.
+    banned: &'a [[[f64; 2]; 4]],
     extent_mm: f64,
     /// By how many the count has been changed.
     done: usize,
     bridges: Vec<Bridge>,
+    /// After each bridge: how many outlines there are, and by how many the count has been changed.
+    laid: Vec<(usize, usize)>,
 }
 
 impl Layer<'_> {
@@ -114,15 +133,25 @@ impl Layer<'_> {
         self.done == self.needed
     }
 
-    /// Joins the nearest nodes first (Kruskal's minimum spanning forest), but never the two of `apart`.
-    fn join(&mut self, apart: Option<[usize; 2]>) {
+    /// Joins the nearest nodes first (Kruskal's minimum spanning forest), but never the two of `apart`, and before all
+    /// others those that are `hard` to join. The nodes that could not be joined are returned.
+    fn join(&mut self, apart: Option<[usize; 2]>, hard: &BTreeSet<usize>) -> Vec<usize> {
+        let mut sets = Joined::new(self.prober.ground.nodes(self.prober.side), apart);
+        if !hard.is_empty() {
+            self.join_some(&mut sets, |a, b| hard.contains(&a) || hard.contains(&b));
+        }
+        self.join_some(&mut sets, |_, _| true);
+        if self.is_done() { Vec::new() } else { sets.left_out(self.prober.ground.nodes(self.prober.side)) }
+    }
+
+    /// Joins the nearest nodes first, of the pairs that are `meant`.
+    fn join_some(&mut self, sets: &mut Joined, meant: impl Fn(usize, usize) -> bool) {
         let (ground, side) = (self.prober.ground, self.prober.side);
-        let mut sets = Joined::new(ground.nodes(side), apart);
         let (mut over, mut reach) = (-1.0, self.prober.width_mm);
         // Links without a place for a bridge: when longer ones are taken, they too may take a longer way.
         let mut again: Vec<(Link, usize)> = Vec::new();
         while !self.is_done() && (over <= self.extent_mm || !again.is_empty()) {
-            let fresh = links(ground, side, over, reach, |a, b| sets.may_join(a, b));
+            let fresh = links(ground, side, over, reach, |a, b| meant(a, b) && sets.may_join(a, b));
             let fresh = fresh.into_iter().map(|link| (link, 0));
             for (link, number) in std::mem::take(&mut again).into_iter().chain(fresh) {
                 let [a, b] = link.rims.map(|rim| ground.node(rim, side));
@@ -137,7 +166,7 @@ impl Layer<'_> {
                     if is_alone { Purpose::Join } else { Purpose::JoinCrowd(self.needed - self.done) };
                 let prober = Prober { width_mm: wider * self.prober.width_mm, ..self.prober };
                 let places = prober.between(link.rims, limit, places);
-                let is_laid = self.lay_best(&places, link.distance_mm, purpose, &mut sets);
+                let is_laid = self.lay_best(&places, link.distance_mm, purpose, sets);
                 if !is_laid && number + 1 < TRIES.len() {
                     again.push((link, number + 1));
                 }
@@ -197,8 +226,9 @@ impl Layer<'_> {
             if place.score >= least {
                 break;
             }
-            let verdict = self.verdict(place, purpose);
-            if let Some(verdict) = verdict.filter(|v| sets.can_join_all(&self.touched(place), v.changes)) {
+            // What it meets costs less to look up than the bridge to try out.
+            let Some(changes) = sets.can_join_all(&self.touched(place), purpose.most()) else { continue };
+            if let Some(verdict) = self.verdict(place, purpose).filter(|v| v.changes == changes) {
                 let fails = if verdict.grade > REQUIRED { REQUIRED_WORTH } else { 0.0 };
                 let worth = GRADE_WORTH * verdict.grade as f64 + fails;
                 let cost = place.score + worth * self.prober.width_mm;
@@ -229,15 +259,28 @@ impl Layer<'_> {
         self.site.try_out(&place.corners, purpose)
     }
 
-    /// Lays a bridge; `false` when the whole was counted and the bridge taken up again.
+    /// The first bridge after which the whole has not the counts that its window had; that the last is one is known.
+    fn first_wrong(&self) -> usize {
+        let (mut right, mut wrong) = (0, self.laid.len());
+        while wrong - right > 1 {
+            let middle = right.midpoint(wrong);
+            let (outlines, done) = self.laid[middle - 1];
+            let built = self.site.built(outlines);
+            let is_right = Counts::of(&built) == self.kind.changed(self.has, done);
+            *if is_right { &mut right } else { &mut wrong } = middle;
+        }
+        right
+    }
+
+    /// Lays a bridge; `false` when it is banned.
     fn lay(&mut self, place: &Place, verdict: &Verdict, least_mm: f64) -> bool {
-        self.site.lay(&place.corners, &verdict.pockets);
-        let wanted = self.kind.changed(self.has, self.done + verdict.changes);
-        if self.careful && Counts::of(&self.site.built()) != wanted {
-            self.site.take_up(verdict.pockets.len());
+        let corners_mm = place.corners.map(|p| p.to_array());
+        if self.banned.contains(&corners_mm) {
             return false;
         }
+        let outlines = self.site.lay(&place.corners, &verdict.pockets);
         self.done += verdict.changes;
+        self.laid.push((outlines, self.done));
         self.bridges.push(Bridge {
             kind: self.kind,
             changes: verdict.changes,
@@ -247,7 +290,7 @@ impl Layer<'_> {
             length_mm: place.length_mm(),
             least_mm,
             area_mm2: verdict.area_mm2,
-            corners_mm: place.corners.map(|p| p.to_array()),
+            corners_mm,
             pockets_mm: verdict.pockets.iter().map(|path| self.in_mm(path)).collect(),
         });
         true
@@ -275,13 +318,24 @@ impl Joined {
         a != b && kept != Some([a, b]) && kept != Some([b, a])
     }
 
-    /// Whether these are `changes` more than one that are not joined yet, and may be.
-    fn can_join_all(&mut self, nodes: &[usize], changes: usize) -> bool {
+    /// By how many the count changes when all these are joined: from one to `most`, if none are joined already and
+    /// all may be.
+    fn can_join_all(&mut self, nodes: &[usize], most: usize) -> Option<usize> {
         let mut roots: Vec<usize> = nodes.iter().map(|&node| self.root(node)).collect();
         roots.sort_unstable();
         roots.dedup();
         let kept = self.apart.map(|pair| pair.map(|node| self.root(node)));
-        roots.len() == changes + 1 && !kept.is_some_and(|pair| pair.iter().all(|node| roots.contains(node)))
+        let may = !kept.is_some_and(|pair| pair.iter().all(|node| roots.contains(node)));
+        roots.len().checked_sub(1).filter(|changes| may && (1..=most).contains(changes))
+    }
+
+    /// Those of so many nodes that are outside of the largest set.
+    fn left_out(&mut self, nodes: usize) -> Vec<usize> {
+        let roots: Vec<usize> = (0..nodes).map(|node| self.sets.find(node)).collect();
+        let mut sizes = vec![0; roots.len()];
+        roots.iter().for_each(|&root| sizes[root] += 1);
+        let largest = (0..roots.len()).max_by_key(|&root| sizes[root]);
+        (0..roots.len()).filter(|&node| Some(roots[node]) != largest).collect()
     }
 
     fn join(&mut self, a: usize, b: usize) {

@@ -19,6 +19,8 @@ const SPACING: f64 = 0.2;
 const MOST_PLACES: usize = 600;
 /// How deep an end is sunk where there is room, as part of the width: enough that rounding cannot loosen it.
 const SINK: f64 = 0.15;
+/// A contour that reaches less far into a bridge, as part of its width, is not met: rounding could miss it.
+const TOUCH: f64 = 0.01;
 /// How far a ray looks for the other contour beyond the middle one's hit, as part of the width.
 const LOOK: f64 = 1.5;
 /// How far the edge of a bridge may lie off what is crossed, where that bends, as part of the width.
@@ -107,8 +109,14 @@ impl Prober<'_> {
         })
     }
 
-    /// The contours that have a point within these corners.
+    /// The contours that have a point well within these corners: what the bridge just touches is not joined.
     pub(super) fn met(&self, corners: &[DVec2; 4]) -> Vec<usize> {
+        let skin = TOUCH * self.width_mm;
+        let inward = |from: DVec2, to: DVec2| (to - from).normalize_or_zero() * skin;
+        let corners: [DVec2; 4] = std::array::from_fn(|i| {
+            let [before, at, after] = [(i + 3) % 4, i, (i + 1) % 4].map(|i| corners[i]);
+            at + inward(at, before) + inward(at, after)
+        });
         let (mut low, mut high) = (corners[0], corners[0]);
         corners.iter().for_each(|&p| (low, high) = (low.min(p), high.max(p)));
         // An edge meets a convex polygon unless it lies beyond one of its sides, or all corners beside the edge.
@@ -166,11 +174,15 @@ impl Prober<'_> {
         let mut reach = [0.0; 2];
         for (end, direction) in [-ahead, ahead].into_iter().enumerate() {
             let mut hits: Vec<Hit> = Vec::new();
+            let mut axis = None;
             for ray in -RAYS..=RAYS {
                 let start = middle + left * (half_mm * f64::from(ray) / f64::from(RAYS));
                 let hit = self.shoot(&edges, start, direction, half_length + BEND * self.width_mm, deepest);
                 if ray == 0 && hit.is_none_or(|hit| (hit.enter - half_length).abs() > 1e-3 * self.width_mm) {
                     return None;
+                }
+                if ray == 0 {
+                    axis = hit;
                 }
                 hits.extend(hit);
             }
@@ -185,6 +197,11 @@ impl Prober<'_> {
             score += mean + SKEW * (deep - shallow) + MISS * self.width_mm * misses / rays + THIN * lacking;
             let room = (0.5 * (far_side - deep)).max(0.0);
             reach[end] = deep + room.min(SINK * self.width_mm);
+            // A corner must be sunk into as well, or the bridge only touches it.
+            if let Some(hit) = axis {
+                let room = 0.5 * (hit.leave - hit.enter);
+                reach[end] = reach[end].max(hit.enter + room.min(SINK * self.width_mm));
+            }
         }
         let (back, front) = (middle - ahead * reach[0], middle + ahead * reach[1]);
         let across = left * half_mm;

@@ -227,6 +227,35 @@ fn a_ring_that_must_stay_closed_does() {
 }
 
 #[test]
+fn what_is_smaller_than_its_bridge_is_joined() {
+    // No machine would show them, but they count: a hole and an island 0.06 mm thick, one of them with a corner nearest.
+    let flat = rectangle(9.9, 1.5, 0.2, 0.06);
+    let corner: Vec<DVec2> = [(9.9, 1.5), (10.1, 1.5), (10.0, 1.56)].map(DVec2::from).to_vec();
+    for speck in [flat, corner] {
+        let coarse = BridgeOptions { chord_mm: 0.05, ..options(0.8) };
+        let hole = region(&[rectangle(0.0, 0.0, 20.0, 2.0), speck.clone()]);
+        let opened = bridge(&hole, counts(1, 0), &coarse).unwrap();
+        assert_eq!(Counts::of(&opened.region), counts(1, 0));
+        assert!(opened.bridges[0].length_mm < 0.6, "{:?}", opened.bridges);
+        let island = region(&[rectangle(0.0, 2.0, 20.0, 2.0), speck]);
+        let machine = BridgeOptions { min_feature_mm: 0.8, ..coarse };
+        let joined = bridge(&island, counts(1, 0), &machine).unwrap();
+        assert!(joined.bridges[0].length_mm < 0.6, "{:?}", joined.bridges);
+        assert_eq!(joined.region.offset(-0.4, 0.001).components(), 1);
+    }
+}
+
+#[test]
+fn a_contour_that_is_only_touched_is_not_met() {
+    let two = region(&[rectangle(0.0, 0.0, 10.0, 10.0), rectangle(12.0, 0.0, 10.0, 10.0)]);
+    let (ground, index) = (ground::Ground::new(&two), crate::planar::EdgeIndex::new(&two));
+    let prober = place::Prober { ground: &ground, index: &index, side: Side::Gap, width_mm: 1.0 };
+    let corners = |from: f64, to: f64| [(from, 4.0), (to, 4.0), (to, 5.0), (from, 5.0)].map(DVec2::from);
+    assert_eq!(prober.met(&corners(9.9, 12.0)), [0]);
+    assert_eq!(prober.met(&corners(9.9, 12.1)), [0, 1]);
+}
+
+#[test]
 fn what_cannot_be_had_is_an_error() {
     let square = region(&[rectangle(0.0, 0.0, 10.0, 10.0)]);
     let wide = bridge(&square, counts(1, 0), &options(0.0)).unwrap_err();

@@ -13,7 +13,7 @@ use glam::DVec2;
 
 use super::BridgeOptions;
 use super::ground::{Ground, Side};
-use crate::planar::{Contour, FillRule, Grid, GridPoint, Region};
+use crate::planar::{Contour, FillRule, Grid, GridPoint, Part, Region};
 
 /// Erosions that a good bridge withstands, as parts of its width, the best first; then only what is required.
 const GRADES: [f64; 3] = [0.35, 0.2, 0.08];
@@ -42,7 +42,8 @@ pub(super) enum Purpose {
 }
 
 impl Purpose {
-    fn most(self) -> usize {
+    /// By how many a bridge may change the count.
+    pub(super) fn most(self) -> usize {
         if let Self::JoinCrowd(most) = self { most } else { 1 }
     }
 }
@@ -103,22 +104,18 @@ impl<'a> Site<'a> {
         Self { ground, side, width_mm, erosion_mm, dilation_mm, least_mm, laid: Vec::new() }
     }
 
-    /// Lays a bridge and fills its pockets.
-    pub(super) fn lay(&mut self, corners: &[DVec2; 4], pockets: &[Vec<GridPoint>]) {
+    /// Lays a bridge and fills its pockets; how many outlines there are then.
+    pub(super) fn lay(&mut self, corners: &[DVec2; 4], pockets: &[Vec<GridPoint>]) -> usize {
         let grid = self.ground.grid;
         self.laid.push(self.on_grid(corners));
         self.laid.extend(pockets.iter().map(|path| Laid::new(grid, path.clone())));
+        self.laid.len()
     }
 
-    /// Takes up the bridge that was laid last, with so many pockets.
-    pub(super) fn take_up(&mut self, pockets: usize) {
-        self.laid.truncate(self.laid.len() - 1 - pockets);
-    }
-
-    /// The region with everything that was laid.
-    pub(super) fn built(&self) -> Region {
+    /// The region with as many of the outlines that were laid.
+    pub(super) fn built(&self, outlines: usize) -> Region {
         let ink = self.ground.rims.iter().map(|rim| rim.steps.clone());
-        let laid = self.laid.iter().map(|laid| match self.side {
+        let laid = self.laid.iter().take(outlines).map(|laid| match self.side {
             Side::Gap => laid.path.clone(),
             Side::Ink => laid.path.iter().rev().copied().collect(),
         });
@@ -143,17 +140,32 @@ impl<'a> Site<'a> {
         }
         let changes = (1..=purpose.most()).find(|&changes| change.serves(purpose, changes))?;
         let area_mm2 = with.area_mm2() - without.area_mm2();
-        let withstands = |[erosion_mm, dilation_mm]: [f64; 2]| {
-            let eroded = |r: f64| Change::between(&offset(&without, -r), &offset(&with, -r));
-            if erosion_mm > 0.0 && !eroded(erosion_mm).serves(purpose, changes) {
-                return false;
-            }
-            dilation_mm == 0.0 || eroded(-dilation_mm).adds_nothing(purpose, changes)
+        // By how many the count changes once `lost` of what is joined have vanished.
+        let withstands = |[erosion_mm, dilation_mm]: [f64; 2], lost: usize| {
+            let offsets = |r: f64| Change::between(&offset(&without, r), &offset(&with, r));
+            let holds = erosion_mm == 0.0
+                || if lost == 0 {
+                    offsets(-erosion_mm).serves(purpose, changes)
+                } else {
+                    offsets(-erosion_mm).joins(changes, lost)
+                };
+            holds && (dilation_mm == 0.0 || offsets(dilation_mm).adds_nothing(purpose, changes))
         };
         let graded = GRADES.into_iter().chain([0.0]).map(|part| {
             [self.erosion_mm, self.dilation_mm].map(|mm| mm.max(part * self.width_mm).max(self.least_mm))
         });
-        let grade = graded.chain([[self.least_mm; 2]]).position(withstands)?;
+        let levels: Vec<[f64; 2]> = graded.chain([[self.least_mm; 2]]).collect();
+        let grade = levels.iter().position(|&level| withstands(level, 0)).or_else(|| {
+            // What is too thin to last by itself needs no hold, as a hole that is smaller than the slit that opens it.
+            let joined: Vec<&Part> = without.parts().iter().filter(|p| !with.parts().contains(p)).collect();
+            let lasting = |&level: &[f64; 2]| {
+                let lost =
+                    joined.iter().filter(|part| offset(&alone(part, self.ground.grid), -level[0]).is_empty());
+                withstands(level, if purpose == Purpose::Loop { 0 } else { lost.count() })
+            };
+            let least = lasting(&levels[REQUIRED + 1]);
+            least.then(|| if lasting(&levels[REQUIRED]) { REQUIRED } else { REQUIRED + 1 })
+        })?;
         Some(Verdict { grade, changes, pockets, area_mm2 })
     }
 
@@ -197,6 +209,11 @@ impl<'a> Site<'a> {
     }
 }
 
+fn alone(part: &Part, grid: Grid) -> Region {
+    let paths: Vec<Vec<GridPoint>> = part.contours().map(|c| c.points().to_vec()).collect();
+    Region::fill(grid, &paths, FillRule::Positive)
+}
+
 fn offset(region: &Region, radius_mm: f64) -> Region {
     region.offset(radius_mm, ARC * radius_mm.abs())
 }
@@ -222,6 +239,11 @@ impl Change {
     fn serves(self, purpose: Purpose, changes: usize) -> bool {
         let found = (self.components, self.holes);
         found == (-(changes as isize), 0) || (purpose == Purpose::Loop && found == (0, 1))
+    }
+
+    /// Whether so many are joined, but for those that are lost with nothing but the bridge in their place.
+    fn joins(self, changes: usize, lost: usize) -> bool {
+        (self.components, self.holes) == (lost as isize - changes as isize, 0)
     }
 
     /// Whether no more is joined, and no slot beside the bridge becomes a hole. Dilated far enough, both sides of a
