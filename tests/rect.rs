@@ -47,7 +47,7 @@ fn the_ink_fills_the_rectangle_in_one_piece() {
 
 #[test]
 fn copies_of_a_tile_join() {
-    let room = Room::with(&["lattice.svg"]);
+    let room = Room::with(&["lattice.svg", "vine.svg"]);
     let report = rect(&room, "lattice.svg --size 40x40mm --width 10mm --components 1 --tile");
     let file = read_svg(&room.read("out.svg"), 0.0025).unwrap();
     let found = tiling(&file.region).unwrap();
