@@ -10,8 +10,8 @@ use super::graph::Scope;
 use super::problem::Problem;
 use crate::topology::{Automaton, Dominance, Goal, StateId, Wanted};
 
-/// States that are followed before the question is left open.
-const PATIENCE: usize = 40_000;
+/// States that are compared before the question is left open.
+const PATIENCE: usize = 4_000_000;
 
 /// Whether no run within `scope` of any length meets the automaton's goal. `false` also when that was not found
 /// out.
@@ -30,12 +30,13 @@ pub(super) fn is_never(problem: &Problem<'_>, automaton: &mut Automaton<'_>, sco
         if !met[piece].contains(&state) {
             continue;
         }
-        if patience == 0 || (scope.stop[piece].is_some() && automaton.accepts(state)) {
+        if scope.stop[piece].is_some() && automaton.accepts(state) {
             return false;
         }
-        patience -= 1;
         for step in problem.steps[piece].iter().filter(|s| scope.allowed[s.to]) {
             if let Some(next) = automaton.step(state, step.to) {
+                let Some(left) = patience.checked_sub(1 + met[step.to].len()) else { return false };
+                patience = left;
                 meet(automaton, &mut met[step.to], next).then(|| queue.push((step.to, next)));
             }
         }
