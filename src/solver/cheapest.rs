@@ -22,8 +22,12 @@ use super::reach::{is_never, is_out_of_range};
 use super::table::NEVER;
 use crate::topology::Automaton;
 
-/// Effort after which the dear estimates are made. Most goals near the exemplar's own topology need fewer.
-const SHORT: usize = 20_000;
+/// Effort after which the dear estimates are made, where that is not dear at all and at most. Most goals near the
+/// exemplar's own topology need less.
+const SHORT: [usize; 2] = [300, 20_000];
+/// Additions of the pass over the pieces for each label of that effort: the more a pass takes, the longer the search
+/// does without.
+const ADDITIONS_PER_LABEL: usize = 32;
 /// Effort after which the dearest of all is made, the pass over all pairs of piece and state with the drift.
 const LONG: usize = 1_500_000;
 /// A threshold is too high when it lets in so many times the effort of the last one.
@@ -50,6 +54,7 @@ pub(super) fn cheapest(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -> 
         floor: threshold,
         best: None,
         by_drift: false,
+        short: short(problem),
         level: if automaton.goal().is_free() { Level::Topology } else { Level::Pieces },
         labels: 0,
         effort: 0,
@@ -62,6 +67,13 @@ pub(super) fn cheapest(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -> 
     search.solve(automaton)
 }
 
+/// Effort after which dear estimates are made.
+fn short(problem: &Problem<'_>) -> usize {
+    let joins: usize = problem.steps.iter().map(Vec::len).sum();
+    let [least, most] = SHORT;
+    (joins.saturating_mul(*problem.window.end() as usize) / ADDITIONS_PER_LABEL).clamp(least, most)
+}
+
 struct Cheapest<'p> {
     problem: &'p Problem<'p>,
     families: Vec<Family>,
@@ -72,6 +84,8 @@ struct Cheapest<'p> {
     /// The best so far: pieces, cost, cost with penalties.
     best: Option<(Vec<usize>, Cost, Cost)>,
     by_drift: bool,
+    /// As [`short`] says.
+    short: usize,
     /// Which estimates were found to be worth while.
     level: Level,
     labels: usize,
@@ -105,8 +119,11 @@ impl Cheapest<'_> {
             let patience = self.patience().map_or(most, |effort| most.min(self.effort_before + effort));
             // Of a step that is as small as it can be, nothing can be taken back.
             let is_leap = self.threshold > self.floor.saturating_add(STEP_BACK);
-            let leap =
-                if is_leap { self.effort + ((LEAP * self.last).max(SHORT) << leaps) } else { usize::MAX };
+            let leap = if is_leap {
+                self.effort + ((LEAP * self.last).max(self.short) << leaps)
+            } else {
+                usize::MAX
+            };
             let before = Standing { effort: self.effort, floor: self.floor };
             let round = self.round(automaton, patience.min(leap));
             if round.is_cut_short {
@@ -160,7 +177,7 @@ impl Cheapest<'_> {
     /// Effort after which the estimates of the next level are made; `None` when there is none.
     fn patience(&self) -> Option<usize> {
         match (self.level, self.by_drift) {
-            (Level::Pieces, _) | (Level::Topology, true) => Some(SHORT),
+            (Level::Pieces, _) | (Level::Topology, true) => Some(self.short),
             (Level::Prices, _) => Some(LONG),
             (Level::Topology, false) | (Level::Drift, _) => None,
         }
