@@ -44,6 +44,9 @@ pub(super) enum Level {
     Drift,
 }
 
+/// Pairs of piece and state with the drift, and what completing a run from them costs at least.
+type Drifting = (Explored<(StateId, i32)>, Table<Cost>);
+
 /// The estimates that are dear to make, as far as they were made.
 #[derive(Default)]
 pub(super) struct Estimates {
@@ -52,7 +55,7 @@ pub(super) struct Estimates {
     /// Whether no run stays in the band.
     is_never: bool,
     /// The same with the drift.
-    drifting: Option<(Explored<(StateId, i32)>, Table<Cost>)>,
+    drifting: Option<Drifting>,
     /// Of the pieces alone, made when the drift is known and neither of the others is.
     pieces: Option<Passes>,
 }
