@@ -146,7 +146,7 @@ impl Cheapest<'_> {
                 self.by_drift = true;
                 self.effort_before = self.effort;
                 self.floor = self.floor.max(round.drifted_at);
-                self.threshold = round.drifted_at;
+                self.threshold = self.floor;
                 self.raise();
                 continue;
             }
@@ -202,7 +202,7 @@ impl Cheapest<'_> {
         for family in &mut self.families {
             // Once all rings through a first piece have been seen, it need not be looked at again.
             let mut allowed = family.scope.allowed.clone();
-            for member in &mut family.members {
+            for at in 0..family.members.len() {
                 let ceiling = self.best.as_ref().map_or(NEVER, |&(_, _, total)| total);
                 let mut leave_out = |estimate: Cost| {
                     let is_late = estimate > self.threshold && estimate < ceiling;
@@ -211,12 +211,13 @@ impl Cheapest<'_> {
                     }
                     is_late || estimate >= ceiling
                 };
-                if leave_out(member.estimate) {
+                if leave_out(family.members[at].estimate) {
                     continue;
                 }
-                let mut table = member.take_table(problem);
+                let mut table = family.take_table(problem, at);
+                let member = &family.members[at];
                 if leave_out(member.estimate) {
-                    member.keep_table(table);
+                    family.keep_table(at, table);
                     continue;
                 }
                 let mut scope = member.scope.clone();
@@ -235,7 +236,7 @@ impl Cheapest<'_> {
                 let beyond = Beyond::new(self.threshold);
                 let Passage { found, drifted_at, beyond, labels, effort, is_cut_short } =
                     walk.run(automaton, beyond);
-                member.keep_table(table);
+                family.keep_table(at, table);
                 self.labels += labels;
                 self.effort += effort;
                 round.drifted_at = round.drifted_at.min(drifted_at);
@@ -356,12 +357,12 @@ impl Cheapest<'_> {
     fn walk_member(
         &mut self,
         automaton: &mut Automaton<'_>,
-        (family, member): (usize, usize),
+        (family, at): (usize, usize),
         width: usize,
     ) -> usize {
         let family = &mut self.families[family];
-        let member = &mut family.members[member];
-        let mut table = member.take_table(self.problem);
+        let mut table = family.take_table(self.problem, at);
+        let member = &family.members[at];
         let walk = Walk {
             problem: self.problem,
             scope: &member.scope,
@@ -374,7 +375,7 @@ impl Cheapest<'_> {
             effort_limit: usize::MAX,
         };
         let passage = walk.run(automaton, Beyond::new(NEVER - 1));
-        member.keep_table(table);
+        family.keep_table(at, table);
         self.labels += passage.labels;
         self.best = passage.found.or(self.best.take());
         passage.effort

@@ -19,6 +19,8 @@ pub(super) struct Family {
     /// All members in one: the first pieces, and the least cost of stopping after each piece.
     pub(super) scope: Scope,
     pub(super) members: Vec<Member>,
+    /// The least cost of completing a run of any member by its last piece.
+    shared: Option<Box<Table<Cost>>>,
     /// What was learned of all members.
     pub(super) estimates: Estimates,
     /// How much.
@@ -110,11 +112,16 @@ impl Family {
                 })
                 .collect(),
         };
-        if let ([only], false) = (&mut members[..], is_ring) {
-            only.table = Some(Box::new(table));
-        }
+        let table = Some(Box::new(table));
+        let shared = match (&mut members[..], is_ring) {
+            ([only], false) => {
+                only.table = table;
+                None
+            }
+            _ => table,
+        };
         let mut family =
-            Self { scope, members, estimates: Estimates::default(), level: Level::Pieces, is_ring };
+            Self { scope, members, shared, estimates: Estimates::default(), level: Level::Pieces, is_ring };
         family.sort();
         family
     }
@@ -145,6 +152,23 @@ impl Family {
         self.look_again(problem, automaton);
     }
 
+    /// The least cost of completing a run of a member by its last piece. As long as nothing is known of topology, that
+    /// of all members does: most that are looked at then come to nothing, and each has a pass of its own.
+    pub(super) fn take_table(&mut self, problem: &Problem<'_>, member: usize) -> Box<Table<Cost>> {
+        match self.shared.take_if(|_| self.level == Level::Pieces) {
+            Some(shared) => shared,
+            None => self.members[member].take_table(problem),
+        }
+    }
+
+    /// Takes a table back for another walk.
+    pub(super) fn keep_table(&mut self, member: usize, table: Box<Table<Cost>>) {
+        match self.level == Level::Pieces && self.is_ring {
+            true => self.shared = Some(table),
+            false => self.members[member].keep_table(table),
+        }
+    }
+
     /// Looks at the members in the light of what has been learned.
     pub(super) fn look_again(&mut self, problem: &Problem<'_>, automaton: &mut Automaton<'_>) {
         for member in &mut self.members {
@@ -163,7 +187,7 @@ impl Family {
 
 impl Member {
     /// The least cost of completing a run of this member by its last piece. Made once, if it is small.
-    pub(super) fn take_table(&mut self, problem: &Problem<'_>) -> Box<Table<Cost>> {
+    fn take_table(&mut self, problem: &Problem<'_>) -> Box<Table<Cost>> {
         let mut table = self.table.take().unwrap_or_else(|| Box::new(piece_table(problem, &self.scope)));
         let starts = self.scope.starts.iter().map(|&(piece, cost)| {
             table.load(problem.widths[piece].min(*problem.window.end()));
@@ -174,7 +198,7 @@ impl Member {
     }
 
     /// Keeps the table for another walk, unless many like it would take too much memory.
-    pub(super) fn keep_table(&mut self, table: Box<Table<Cost>>) {
+    fn keep_table(&mut self, table: Box<Table<Cost>>) {
         const SMALL: usize = 4 << 20;
         if table.bytes() <= SMALL || self.scope.starts.len() > 1 {
             self.table = Some(table);
