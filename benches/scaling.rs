@@ -42,7 +42,7 @@ fn main() {
     let panels = [
         (
             "pieces out",
-            vec![by_length("filigree", 100_000), by_length("lace", 100_000), by_length("vine", 10_000)],
+            vec![by_length("filigree", 100_000), by_length("lace", 100_000), by_length("vine", 100_000)],
         ),
         ("pieces in", vec![by_size("pieces in", &[10, 20, 40, 70, 100, 200, 400], |n| (n, 6, 200))]),
         ("portals", vec![by_size("portals", &[2, 4, 6, 8, 12, 16, 20, 24], |m| (100, m, 100))]),

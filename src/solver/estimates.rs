@@ -26,6 +26,8 @@ use crate::topology::{Automaton, Descriptor, Goal, Shape, StateId};
 
 /// Nodes of a graph at which it is given up.
 const NODE_LIMIT: usize = 60_000;
+/// Additions in the pass that knows state and drift beyond which it is not begun: about a second.
+const WORK_LIMIT: usize = 1_000_000_000;
 /// Additions in the pass that knows the drift, of which there are some 700 million in a second.
 const DRIFT_WORK_LIMIT: usize = 10_000_000_000;
 /// The portals of classes that are told from the rest: the first that is affordable.
@@ -44,8 +46,8 @@ pub(super) enum Level {
     Drift,
 }
 
-/// Pairs of piece and state with the drift, and what completing a run from them costs at least.
-type Drifting = (Explored<(StateId, i32)>, Table<Cost>);
+/// Runs by what is known of them, the drift among it, and what completing them costs at least.
+type Drifting<K> = (Explored<K>, Table<Cost>);
 
 /// The estimates that are dear to make, as far as they were made.
 #[derive(Default)]
@@ -55,7 +57,9 @@ pub(super) struct Estimates {
     /// Whether no run stays in the band.
     is_never: bool,
     /// The same with the drift.
-    drifting: Option<Drifting>,
+    drifting: Option<Drifting<(StateId, i32)>>,
+    /// And without the state.
+    drifts: Option<Drifting<i32>>,
     /// Of the pieces alone, made when the drift is known and neither of the others is.
     pieces: Option<Passes>,
 }
@@ -118,14 +122,17 @@ impl Estimates {
         automaton: &mut Automaton<'_>,
         scope: &Scope,
     ) {
+        let limit = problem.share(NODE_LIMIT);
+        let longest = *problem.window.end();
         if self.exact.is_some() || automaton.goal().is_free() {
-            self.drifting = triples(problem, automaton, scope, true, problem.share(NODE_LIMIT)).and_then(
-                |mut explored| {
-                    let graph = Arc::new(std::mem::take(&mut explored.graph));
-                    let table = estimate(problem, &graph, problem.share(DRIFT_WORK_LIMIT), |cost, _| cost)?;
-                    Some((explored, table))
-                },
-            );
+            let is_short = |found: &Explored<_>| found.graph.work(longest) <= problem.share(WORK_LIMIT);
+            let found = triples(problem, automaton, scope, true, limit).filter(is_short);
+            self.drifting = found.and_then(|explored| drifting(problem, explored));
+        }
+        if self.drifting.is_none() {
+            // Longer runs without their state, which leaves far fewer nodes.
+            let found = with_drift(problem, scope, limit);
+            self.drifts = found.and_then(|explored| drifting(problem, explored));
         }
     }
 
@@ -136,10 +143,9 @@ impl Estimates {
 
     /// Makes the rows of `length` and of what a step leads to available.
     pub(super) fn load(&mut self, length: u32) {
-        let Self { exact, classes, pieces, drifting, .. } = self;
-        if let Some((_, table)) = drifting {
-            table.load(length);
-        }
+        let Self { exact, classes, pieces, drifting, drifts, .. } = self;
+        let tables = [drifting.as_mut().map(|(_, table)| table), drifts.as_mut().map(|(_, table)| table)];
+        tables.into_iter().flatten().for_each(|table| table.load(length));
         let passes = [
             exact.as_mut().map(|(_, passes)| passes),
             classes.as_mut().map(|classes| &mut classes.passes),
@@ -172,6 +178,9 @@ impl Estimates {
         if let (Some((explored, table)), Some(drift)) = (&self.drifting, drift) {
             let node = explored.node(piece, (state, drift));
             rest = rest.max(node.map_or(0, |node| table.at(length, node)));
+        }
+        if let (Some((explored, table)), Some(drift)) = (&self.drifts, drift) {
+            rest = rest.max(explored.node(piece, drift).map_or(0, |node| table.at(length, node)));
         }
         if let Some(classes) = &mut self.classes {
             rest = rest.max(classes.rest(problem, automaton, run));
@@ -214,6 +223,27 @@ pub(super) fn triples(
         }
         scope.stop[piece].filter(|_| automaton.accepts(state))
     })
+}
+
+/// All pairs of piece and drift that runs reach; `None` when they are more than `limit`.
+fn with_drift(problem: &Problem<'_>, scope: &Scope, limit: usize) -> Option<Explored<i32>> {
+    let starts: Vec<(usize, i32)> = scope.starts.iter().map(|&(piece, _)| (piece, 0)).collect();
+    Explored::new(problem, starts, limit, |piece, &drift, joins| {
+        for step in problem.steps[piece].iter().filter(|s| scope.allowed[s.to]) {
+            let drift = drift.saturating_add(step.rise);
+            if drift.saturating_abs() <= problem.drift_limit {
+                joins.push((*step, vec![drift]));
+            }
+        }
+        scope.stop[piece]
+    })
+}
+
+/// The pass over what was explored.
+fn drifting<K>(problem: &Problem<'_>, mut explored: Explored<K>) -> Option<Drifting<K>> {
+    let graph = Arc::new(std::mem::take(&mut explored.graph));
+    let table = estimate(problem, &graph, problem.share(DRIFT_WORK_LIMIT), |cost, _| cost)?;
+    Some((explored, table))
 }
 
 /// A class against the rest, by number, and the Euler characteristic where it is read.
