@@ -41,10 +41,10 @@ const MOST_SCRAPS: f64 = 4.0;
 const ROWS_MISFIT: f64 = 2.0;
 /// So many places are tried at which a tile's strip is split.
 const SPLITS: usize = 2;
-/// The most ways that are tried at one bar. More, and a refusal takes longer than anyone waits for it.
-const MOST_ATTEMPTS: usize = 8;
+/// The most ways that are tried at one bar and height. More, and a refusal takes longer than anyone waits for it.
+const MOST_ATTEMPTS: usize = 4;
 /// The same for tiles, whose ways take longer and have more in common.
-const MOST_TILE_ATTEMPTS: usize = 6;
+const MOST_TILE_ATTEMPTS: usize = 3;
 
 /// Which joins are accepted.
 #[derive(Debug, Clone, Copy)]
@@ -146,8 +146,8 @@ impl Search<'_, '_> {
     /// The first way that comes out right with joins that pass a bar.
     fn at_bar(&mut self, heights: &mut [Strips], goals: &[Goal], bar: Bar) -> Option<Found> {
         let most = if self.job.tile { MOST_TILE_ATTEMPTS } else { MOST_ATTEMPTS };
-        self.allowed = self.attempts.len() + most;
         for strips in heights {
+            self.allowed = self.attempts.len() + most;
             for &goal in goals {
                 if let Some(found) = self.over_strips(strips, goal, bar) {
                     return Some(found);
