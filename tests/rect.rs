@@ -47,7 +47,7 @@ fn the_ink_fills_the_rectangle_in_one_piece() {
 
 #[test]
 fn copies_of_a_tile_join() {
-    let room = Room::with(&["lattice.svg", "vine.svg"]);
+    let room = Room::with(&["lattice.svg", "chain.svg"]);
     let report = rect(&room, "lattice.svg --size 40x40mm --width 10mm --components 1 --tile");
     let file = read_svg(&room.read("out.svg"), 0.0025).unwrap();
     let found = tiling(&file.region).unwrap();
@@ -65,7 +65,7 @@ fn copies_of_a_tile_join() {
     assert_eq!(room.run("verify out.svg --tiles --components 2").code, 4);
     assert_eq!(room.run("verify out.stl --tiles").code, 2);
     // A rectangle that is no tile does not join.
-    rect(&room, "vine.svg --size 40x40mm --width 10mm --components 1");
+    rect(&room, "chain.svg --size 40x40mm --width 10mm --components 1");
     let plain = read_svg(&room.read("out.svg"), 0.0025).unwrap();
     assert!(tiling(&plain.region).is_err());
     let refused = room.run("verify out.svg --tiles");
