@@ -47,7 +47,7 @@ fn the_ink_fills_the_rectangle_in_one_piece() {
 
 #[test]
 fn copies_of_a_tile_join() {
-    let room = Room::with(&["lattice.svg", "vine.svg"]);
+    let room = Room::with(&["lattice.svg", "chain.svg"]);
     let report = rect(&room, "lattice.svg --size 40x40mm --width 10mm --components 1 --tile");
     let file = read_svg(&room.read("out.svg"), 0.0025).unwrap();
     let found = tiling(&file.region).unwrap();
@@ -65,7 +65,7 @@ fn copies_of_a_tile_join() {
     assert_eq!(room.run("verify out.svg --tiles --components 2").code, 4);
     assert_eq!(room.run("verify out.stl --tiles").code, 2);
     // A rectangle that is no tile does not join.
-    rect(&room, "vine.svg --size 40x40mm --width 10mm --components 1");
+    rect(&room, "chain.svg --size 40x40mm --width 10mm --components 1");
     let plain = read_svg(&room.read("out.svg"), 0.0025).unwrap();
     assert!(tiling(&plain.region).is_err());
     let refused = room.run("verify out.svg --tiles");
@@ -74,7 +74,7 @@ fn copies_of_a_tile_join() {
 
 #[test]
 fn what_cannot_be_is_refused_by_its_name() {
-    let room = Room::with(&["vine.svg", "strands.svg"]);
+    let room = Room::with(&["vine.svg", "leaves.svg", "meander.svg"]);
     let before = room.contents();
     for (arguments, code, says) in [
         ("vine.svg --size 120", 2, "such as 120x80mm"),
@@ -84,8 +84,10 @@ fn what_cannot_be_is_refused_by_its_name() {
         ("vine.svg --size 40x30mm --width 31mm", 2, "--width"),
         ("vine.svg --size 40x30mm --components 0", 2, "--components"),
         ("missing.svg --size 40x30mm", 2, "missing.svg"),
-        // Smaller than any run of pieces at this height.
-        ("vine.svg --size 2x20mm --width 20mm", 3, "no strip as long as it is wide"),
+        // Separate leaves do not hang together however they are joined.
+        ("leaves.svg --size 60x40mm --components 1", 3, "--bridge 1mm joins what stays apart"),
+        // No strand leads on from one copy to the next.
+        ("meander.svg --size 60x40mm --components 1 --tile", 3, "no cut crosses its ink"),
     ] {
         room.refuses(&format!("rect {arguments} -o out.svg"), code, &[says]);
         assert_eq!(room.contents(), before, "{arguments}");

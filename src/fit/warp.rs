@@ -31,6 +31,9 @@ const FADE: f64 = 1.0;
 #[derive(Debug, Clone)]
 pub struct StripWarp {
     width_mm: f64,
+    /// Where the ink lies along x: in the blank beyond it, beside a side without endpoints, nothing bends, so that
+    /// ink moves with that side from its very edge.
+    ink_mm: (f64, f64),
     left: Side,
     right: Side,
 }
@@ -47,14 +50,16 @@ impl StripWarp {
     /// The warp of the strip of `piece` that takes its endpoints to `targets`.
     pub fn new(piece: &Piece, targets: &Targets<'_>) -> Self {
         let sides = ((&piece.left[..], targets.left), (&piece.right[..], targets.right));
-        Self::of_strip(piece.width_mm, sides.0, sides.1, targets.offset_mm, targets.held_mm)
+        let blanks_mm = piece.blanks_mm();
+        Self::of_strip(piece.width_mm, blanks_mm, sides.0, sides.1, targets.offset_mm, targets.held_mm)
     }
 
-    /// The warp of a strip of `width_mm` whose sides' endpoints go to the targets. A side without endpoints
+    /// The warp of a strip of `width_mm`, blank at both ends by so much, whose sides' endpoints go to the targets. A side without endpoints
     /// is moved by `offset_mm`, unless heights are held: then points at `held_mm` above and below the middle stay
     /// where they are, and targets must lie between.
     fn of_strip(
         width_mm: f64,
+        (before_mm, after_mm): (f64, f64),
         (left, left_targets): (&[Endpoint], &[SideTarget]),
         (right, right_targets): (&[Endpoint], &[SideTarget]),
         offset_mm: f64,
@@ -84,9 +89,10 @@ impl StripWarp {
         };
         let (left_heights, right_heights) = (heights(left, left_targets), heights(right, right_targets));
         let least = left_heights.slope_range().0.min(right_heights.slope_range().0);
-        let most_reach = MAX_REACH * width_mm;
+        let most_reach = MAX_REACH * (width_mm - before_mm - after_mm);
         Self {
             width_mm,
+            ink_mm: (before_mm, width_mm - after_mm),
             left: Side::new(left_heights, left, left_targets, most_reach, least, held_mm),
             right: Side::new(right_heights, right, right_targets, most_reach, least, held_mm),
         }
@@ -164,7 +170,8 @@ const MAX_DEPTH: u32 = 10;
 impl StripWarp {
     /// The image of a point of the piece; x in 0..=width, and both in millimetres.
     pub fn map(&self, p: DVec2) -> DVec2 {
-        let t = (p.x / self.width_mm).clamp(0.0, 1.0);
+        let (from, to) = self.ink_mm;
+        let t = ((p.x - from) / (to - from)).clamp(0.0, 1.0);
         let s = t * t * (3.0 - 2.0 * t);
         let blended = (1.0 - s) * self.left.heights.value(p.y) + s * self.right.heights.value(p.y);
         let tangents = self.left.bump(p.x, p.y) - self.right.bump(self.width_mm - p.x, p.y);
@@ -229,7 +236,7 @@ mod tests {
     proptest! {
         #[test]
         fn vertical_lines_stay_in_order(left in ends(), right in ends(), width in 0.2f64..20.0, x in 0.0f64..1.0) {
-            let warp = StripWarp::of_strip(width, (&left.0, &left.1), (&right.0, &right.1), 0.5, None);
+            let warp = StripWarp::of_strip(width, (0.0, 0.0), (&left.0, &left.1), (&right.0, &right.1), 0.5, None);
             let mut before = f64::NEG_INFINITY;
             for i in 0..=2000 {
                 let y = -15.0 + 0.015 * f64::from(i);
@@ -241,7 +248,7 @@ mod tests {
 
         #[test]
         fn held_heights_stay(left in ends(), right in ends(), width in 0.2f64..20.0, x in 0.0f64..1.0) {
-            let warp = StripWarp::of_strip(width, (&left.0, &left.1), (&right.0, &right.1), 0.0, Some(30.0));
+            let warp = StripWarp::of_strip(width, (0.0, 0.0), (&left.0, &left.1), (&right.0, &right.1), 0.0, Some(30.0));
             let mut before = f64::NEG_INFINITY;
             for i in 0..=2000 {
                 let y = -30.0 + 0.03 * f64::from(i);
@@ -257,7 +264,7 @@ mod tests {
         #[test]
         fn endpoints_and_slopes_arrive(left in ends(), right in ends()) {
             let width = 10.0;
-            let warp = StripWarp::of_strip(width, (&left.0, &left.1), (&right.0, &right.1), 0.0, None);
+            let warp = StripWarp::of_strip(width, (0.0, 0.0), (&left.0, &left.1), (&right.0, &right.1), 0.0, None);
             for (x, inward, (ends, targets)) in [(0.0, 1.0, &left), (width, -1.0, &right)] {
                 let side = if x == 0.0 { &warp.left } else { &warp.right };
                 let reach = side.reach_mm;

@@ -5,7 +5,7 @@ use super::builder::BandJob;
 use super::choice::{Choice, Chosen, choose};
 use super::cut::Cut;
 use super::error::JobError;
-use super::plan::{Plan, PlanError, PlanOptions};
+use super::plan::{Plan, PlanError, PlanOptions, first_fit};
 use super::refusal;
 use super::stage::{Clock, Stage};
 use crate::domain::BandMap;
@@ -37,6 +37,19 @@ pub(super) fn plan_run(
     let chosen = strictly(&options, Choice::Cheapest, false, cut, clock);
     let mut chosen = chosen.map_err(|error| refused(error, cut, &options, ""))?;
     Ok(with_topology(cut, &options, chosen.plans.swap_remove(0)))
+}
+
+/// As [`plan_run`], for one way of many: with the successors that are in the table only, and no reason where there is
+/// no sequence.
+pub(super) fn plan_way(
+    job: &BandJob,
+    cut: &Cut,
+    map: &BandMap,
+    clock: &mut Clock<'_>,
+) -> Option<(Plan, Topology)> {
+    let options = plan_options(job, cut, map);
+    let plan = clock.time(Stage::Solve, || first_fit(&cut.catalogue, &options)).ok()?;
+    Some(with_topology(cut, &options, plan))
 }
 
 /// The sequences that `job` chooses along the curve of `map`. Where none meets the goal and bridges are allowed, the

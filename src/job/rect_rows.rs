@@ -14,7 +14,7 @@ use super::cut::{Cut, slice_region};
 use super::error::JobError;
 use super::part::Part;
 use super::plan::Plan;
-use super::planning::plan_run;
+use super::planning::{plan_run, plan_way};
 use super::rect_builder::RectJob;
 use super::rect_strip::Strip;
 use super::rect_tile::{clear_sides, join_own_copies, opened};
@@ -73,8 +73,10 @@ pub(super) struct RowsWish {
     pub(super) goal: Goal,
     /// The greatest misfit of a join.
     pub(super) worst_misfit: f64,
-    /// Whether scraps that are repeated may stand for rows.
-    pub(super) scraps: bool,
+    /// How many times more joins than rows usually have are accepted.
+    pub(super) scraps: f64,
+    /// Whether a refusal is worth the time to find its reason.
+    pub(super) explained: bool,
     /// Which of its cuts a tile's strip is split at: 0 is the best.
     pub(super) split: usize,
 }
@@ -113,17 +115,22 @@ impl Way {
         let mut cut = slice(&standing)?;
         if tile {
             clear_sides(&mut cut);
-            let (region, _) = opened(&standing, &cut.slicing.cuts, wish.split, &[])?;
+            let (region, _) = opened(&standing, &cut.slicing.cuts, wish.split, true, &[])?;
             cut = slice(&region)?;
             join_own_copies(&mut cut, true);
         } else {
             cut.sides = Sides::Filled;
         }
-        let (plan, planned) = plan_run(&job, &mut cut, map, clock)?;
+        let (plan, planned) = match wish.explained {
+            true => plan_run(&job, &mut cut, map, clock)?,
+            false => plan_way(&job, &cut, map, clock).ok_or_else(|| {
+                JobError::Refused("no sequence of these rows has what is wanted".to_owned())
+            })?,
+        };
         let joins = || plan.sequence.windows(2).filter_map(|w| cut.catalogue.join(w[0], w[1]));
         let jumps = joins().filter(|join| !join.is_natural).count();
         let rows = map.curve().length_mm() / strip.height_mm();
-        if !wish.scraps && jumps as f64 > JOINS_PER_ROW * rows.max(1.0) {
+        if jumps as f64 > wish.scraps * JOINS_PER_ROW * rows.max(1.0) {
             return Err(JobError::Refused(format!(
                 "rows would be joined {jumps} times where {rows:.1} rows fit the height, from scraps of the pattern"
             )));
@@ -164,7 +171,11 @@ impl Way {
         // Ink that the machine cannot make may be thicker another way.
         let drawn = band.drawn(clock)?;
         let tiling = match tile {
-            true => Some(clock.time(Stage::Verify, || verify::tiling(&drawn.found.region))?),
+            // One that does not join is one way less, and no fault of a file.
+            true => {
+                let tiling = clock.time(Stage::Verify, || verify::tiling(&drawn.found.region));
+                Some(tiling.map_err(|fault| JobError::Refused(fault.to_string()))?)
+            }
             false => None,
         };
         Ok(Made { band, drawn, tiling })

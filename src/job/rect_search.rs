@@ -30,27 +30,29 @@ const HEIGHTS: [f64; 2] = [1.0, 0.6];
 const SEEDS: [u64; 2] = [1, 2];
 /// What joins are accepted, as tried.
 const BARS: [Bar; 3] = [
-    Bar { worst_misfit: 1.0, scraps: false },
-    Bar { worst_misfit: 2.0, scraps: true },
-    Bar { worst_misfit: f64::INFINITY, scraps: true },
+    Bar { worst_misfit: 1.0, scraps: 1.0 },
+    Bar { worst_misfit: 2.0, scraps: MOST_SCRAPS },
+    Bar { worst_misfit: f64::INFINITY, scraps: MOST_SCRAPS },
 ];
+/// The most [`Bar::scraps`]. Beyond, nothing of the ornament is left but zigzags.
+const MOST_SCRAPS: f64 = 4.0;
 /// The greatest misfit of a join between rows, whatever strips may have: there are many in a panel, and a sliver is
 /// seen in each. Reflections are always within it.
 const ROWS_MISFIT: f64 = 2.0;
 /// So many places are tried at which a tile's strip is split.
 const SPLITS: usize = 2;
-/// The most ways that are tried at one bar. More, and a refusal takes longer than anyone waits for it.
-const MOST_ATTEMPTS: usize = 8;
+/// The most ways that are tried at one bar and height. More, and a refusal takes longer than anyone waits for it.
+const MOST_ATTEMPTS: usize = 4;
 /// The same for tiles, whose ways take longer and have more in common.
-const MOST_TILE_ATTEMPTS: usize = 6;
+const MOST_TILE_ATTEMPTS: usize = 3;
 
 /// Which joins are accepted.
 #[derive(Debug, Clone, Copy)]
 struct Bar {
     /// The greatest misfit (see [`crate::pieces::Join::misfit`]).
     worst_misfit: f64,
-    /// Whether scraps that are repeated may stand for rows.
-    scraps: bool,
+    /// How many times more joins than usual are accepted, before it is scraps that are repeated.
+    scraps: f64,
 }
 
 /// Both directions, and all that was tried for them.
@@ -66,6 +68,10 @@ pub(super) struct Found {
     pub(super) exemplar: Exemplar,
 }
 
+/// How much a failure tells: whether it is one of a second pass, and whether it is a refusal and not a way that came
+/// out wrong.
+type Telling = (bool, bool);
+
 /// Tries one way after another.
 struct Search<'a, 'c> {
     job: &'a RectJob,
@@ -77,8 +83,8 @@ struct Search<'a, 'c> {
     allowed: usize,
     /// The width of bridges, once no way comes out right without them.
     bridge_mm: Option<f64>,
-    /// The first failure of a second pass, or of a first one as long as there is none.
-    error: Option<(bool, JobError)>,
+    /// The failure that tells most, and how much.
+    error: Option<(Telling, JobError)>,
 }
 
 /// The first way that comes out right.
@@ -140,8 +146,8 @@ impl Search<'_, '_> {
     /// The first way that comes out right with joins that pass a bar.
     fn at_bar(&mut self, heights: &mut [Strips], goals: &[Goal], bar: Bar) -> Option<Found> {
         let most = if self.job.tile { MOST_TILE_ATTEMPTS } else { MOST_ATTEMPTS };
-        self.allowed = self.attempts.len() + most;
         for strips in heights {
+            self.allowed = self.attempts.len() + most;
             for &goal in goals {
                 if let Some(found) = self.over_strips(strips, goal, bar) {
                     return Some(found);
@@ -155,7 +161,7 @@ impl Search<'_, '_> {
     fn over_strips(&mut self, strips: &mut Strips, goal: Goal, bar: Bar) -> Option<Found> {
         let Bar { worst_misfit, scraps } = bar;
         // A tile begins and ends with one and the same cut, which leaves too few ways to be choosy.
-        let scraps = scraps || self.job.tile;
+        let scraps = if self.job.tile { MOST_SCRAPS } else { scraps };
         let given = self.job.band.options.seed;
         let seeds: Vec<Option<u64>> = match given {
             Some(_) => vec![given],
@@ -183,8 +189,10 @@ impl Search<'_, '_> {
                     continue;
                 }
             };
+            let explained = self.error.as_ref().is_none_or(|((is_second, _), _)| !is_second);
             for split in 0..if self.job.tile { SPLITS } else { 1 } {
-                let rows = RowsWish { goal, worst_misfit: worst_misfit.min(ROWS_MISFIT), scraps, split };
+                let rows =
+                    RowsWish { goal, worst_misfit: worst_misfit.min(ROWS_MISFIT), scraps, explained, split };
                 if let Some((way, second)) = self.over_strip(&strip, rows, &strips.exemplar) {
                     return Some(Found {
                         first: strip,
@@ -218,21 +226,25 @@ impl Search<'_, '_> {
         .ok()
     }
 
-    /// The first failure counts; those of second passes tell more.
+    /// The first of those counts that tell most.
     fn note(&mut self, is_second: bool, error: JobError) {
-        if self.error.as_ref().is_none_or(|(known, _)| is_second && !known) {
-            self.error = Some((is_second, error));
+        let telling = (is_second, matches!(error, JobError::Refused(_)));
+        if self.error.as_ref().is_none_or(|(known, _)| telling > *known) {
+            self.error = Some((telling, error));
         }
     }
 
     fn refusal(self) -> JobError {
         let ways = self.attempts.len();
+        let options = &self.job.band.options;
+        let can_bridge = options.bridge_mm.is_none() && options.goal.components.is_some() && !self.job.tile;
         match self.error {
-            Some((true, JobError::Refused(why))) => JobError::Refused(format!(
-                "no rectangle of {}: {ways} way(s) of making it were tried; of the first, whose rows are the pieces, {why}; another --width may help",
-                self.job.size
+            Some(((true, _), JobError::Refused(why))) => JobError::Refused(format!(
+                "no rectangle of {}: {ways} way(s) of making it were tried; of the first, whose rows are the pieces, {why}; another --width may help{}",
+                self.job.size,
+                if can_bridge { ", and --bridge 1mm joins what stays apart" } else { "" }
             )),
-            Some((false, JobError::Refused(why))) => JobError::Refused(format!(
+            Some(((false, _), JobError::Refused(why))) => JobError::Refused(format!(
                 "no rectangle of {}: no strip as long as it is wide: {why}",
                 self.job.size
             )),

@@ -14,6 +14,7 @@ use super::rect_tile::{join_own_copies, opened};
 use super::stage::{Clock, Stage};
 use crate::domain::{BandMap, PlanarCurve};
 use crate::exemplar::Exemplar;
+use crate::fit::StitchMethod;
 use crate::planar::{Region, Tolerances};
 use crate::topology::Goal;
 
@@ -54,8 +55,8 @@ pub(super) struct Wish {
     pub(super) seed: Option<u64>,
     /// The greatest misfit of a join.
     pub(super) worst_misfit: f64,
-    /// Whether scraps that are repeated may stand for the pattern.
-    pub(super) scraps: bool,
+    /// How many times more jumps than strips usually have are accepted.
+    pub(super) scraps: f64,
     /// Whether the exemplar is folded: it may go on as its own reflection, and hardly any other way. Such a strip is
     /// found at once where there are too many others to look at.
     pub(super) fold: bool,
@@ -140,24 +141,26 @@ impl Strips {
     }
 
     fn made(&self, wish: Wish, clock: &mut Clock<'_>) -> Result<Option<Strip>, JobError> {
-        let job = &self.job(wish);
+        let mut job = self.job(wish);
         let mut slice = |job: &BandJob, region: &Region| {
             clock.time(Stage::Slice, || slice_region(job, self.exemplar.clone(), region))
         };
-        let mut cut = slice(job, self.exemplar.region())?;
+        let mut cut = slice(&job, self.exemplar.region())?;
         if self.tile {
-            let (region, kept) = opened(self.exemplar.region(), &cut.slicing.cuts, 0, &job.options.kept)?;
-            let mut job = job.clone();
+            let (region, kept) =
+                opened(self.exemplar.region(), &cut.slicing.cuts, 0, job.options.mirror, &job.options.kept)?;
             job.options.kept = kept;
+            // Rotation-invariant deformation turns what no join holds, as the two ends that have to match.
+            job.options.stitch = StitchMethod::Warp;
             cut = slice(&job, &region)?;
             join_own_copies(&mut cut, false);
         }
         let map = flat_map(self.map_width_mm, cut.height_mm)?;
-        let (plan, planned) = plan_run(job, &mut cut, &map, clock)?;
+        let (plan, planned) = plan_run(&job, &mut cut, &map, clock)?;
         let joins = plan.sequence.windows(2).filter_map(|w| cut.catalogue.join(w[0], w[1]));
         let jumps = joins.filter(|join| !join.is_natural).count();
         let runs = self.map_width_mm / cut.catalogue.width_mm();
-        if !wish.scraps && jumps as f64 > JUMPS_PER_RUN * runs.max(1.0) {
+        if jumps as f64 > wish.scraps * JUMPS_PER_RUN * runs.max(1.0) {
             return Err(JobError::Refused(format!(
                 "the strip would have {jumps} jumps where the exemplar fits {runs:.1} times, and be made of scraps of it"
             )));
@@ -166,7 +169,7 @@ impl Strips {
         if strips.any(|strip| strip.band.plan.sequence == plan.sequence) {
             return Ok(None);
         }
-        let band = Band::made(job, &cut, plan, planned, &map, None, clock)?;
+        let band = Band::made(&job, &cut, plan, planned, &map, None, clock)?;
         Ok(Some(Strip { band, cuts_mm: cuts_mm(&cut) }))
     }
 }
