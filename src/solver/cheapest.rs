@@ -138,7 +138,9 @@ impl Cheapest<'_> {
                 }
                 continue;
             }
-            self.last = self.effort - before.effort;
+            let effort = self.effort - before.effort;
+            let has_grown = 2 * effort > 3 * self.last;
+            self.last = effort;
             leaps = 0;
             let best = self.best.as_ref().map_or(NEVER, |&(_, _, total)| total);
             if !self.by_drift && round.drifted_at < best && round.drifted_at <= self.threshold {
@@ -156,10 +158,11 @@ impl Cheapest<'_> {
                 break;
             }
             self.floor = self.floor.max(round.beyond.least());
+            let next = round.beyond.next((self.last / LABELS_PER_RUN).max(FEW));
             // Where many estimates lie close together, steps grow all the same.
             let step = self.threshold.saturating_sub(before.floor).saturating_mul(2);
-            let next = round.beyond.next((self.last / LABELS_PER_RUN).max(FEW));
-            self.threshold = next.max(self.floor.saturating_add(step).min(NEVER - 1));
+            let least = if has_grown { 0 } else { self.floor.saturating_add(step).min(NEVER - 1) };
+            self.threshold = next.max(least);
             if self.patience().is_some_and(|effort| self.effort > self.effort_before + effort) {
                 self.learn(automaton);
             }

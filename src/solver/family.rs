@@ -210,7 +210,7 @@ fn piece_table(problem: &Problem<'_>, scope: &Scope) -> Table<Cost> {
     let mut table = Table::new(
         of_pieces(problem, scope).into(),
         problem.window.clone(),
-        problem.share(TABLE_BUDGET / 4),
+        problem.share(TABLE_BUDGET / 2),
         |c, _| c,
     );
     table.load(0);

@@ -42,7 +42,7 @@ pub(super) trait Weigh: Copy + PartialEq {
 }
 
 /// Bytes of a table up to which all its rows are kept.
-pub(super) const TABLE_BUDGET: usize = 256 << 20;
+pub(super) const TABLE_BUDGET: usize = 128 << 20;
 /// A cost that nothing reaches.
 pub(super) const NEVER: Cost = Cost::MAX;
 
