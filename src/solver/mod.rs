@@ -16,6 +16,7 @@ mod best;
 mod big;
 mod census;
 mod cheapest;
+mod classes;
 mod connectivity;
 mod counts;
 mod estimates;

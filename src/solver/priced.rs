@@ -225,3 +225,97 @@ fn price(problem: &Problem<'_>, graph: &Arc<Graph>, starts: &[(usize, u32, Cost)
     let best = high.filter(|high| high.value > low.value).unwrap_or(low);
     (best.at > 0).then_some(side * best.at)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::graph::{Scope, of_pieces};
+    use super::super::problem::Step;
+    use super::*;
+    use crate::topology::Shape;
+    use proptest::prelude::*;
+
+    const LIMIT: i32 = 3;
+
+    /// Four pieces, of which the second may be stopped at.
+    fn problem(steps: Vec<Vec<Step>>, end: u32) -> Problem<'static> {
+        Problem {
+            shape: Shape::Open,
+            descriptors: &[],
+            widths: vec![1, 2, 1, 3],
+            steps,
+            begin: vec![Some(0); 4],
+            end: vec![None, Some(2), None, None],
+            window: end.saturating_sub(2)..=end,
+            drift_limit: LIMIT,
+            variety: None,
+            memory_limit: 1 << 30,
+        }
+    }
+
+    /// The least costs of completing runs that stay in the band, by length, piece and drift.
+    fn completions(problem: &Problem<'_>) -> Vec<[[Cost; 2 * LIMIT as usize + 1]; 4]> {
+        let end = *problem.window.end() as usize;
+        let mut rows = vec![[[NEVER; 2 * LIMIT as usize + 1]; 4]; end + 1];
+        for length in (0..=end).rev() {
+            for piece in 0..4 {
+                for drift in -LIMIT..=LIMIT {
+                    let may_stop = problem.window.contains(&(length as u32));
+                    let stop = problem.end[piece].filter(|_| may_stop).unwrap_or(NEVER);
+                    let rests = problem.steps[piece].iter().map(|step| {
+                        let row = rows.get(length + problem.widths[step.to] as usize);
+                        let at = usize::try_from(drift + step.rise + LIMIT).ok();
+                        let rest = row.zip(at).and_then(|(row, at)| row[step.to].get(at));
+                        rest.map_or(NEVER, |rest| rest.saturating_add(step.cost))
+                    });
+                    rows[length][piece][(drift + LIMIT) as usize] = rests.fold(stop, Cost::min);
+                }
+            }
+        }
+        rows
+    }
+
+    proptest! {
+        #[test]
+        fn a_price_never_says_too_much(
+            steps in prop::collection::vec(
+                prop::collection::vec((0usize..4, 0u64..100, -3i32..=3), 1..5), 4),
+            end in 6u32..40,
+        ) {
+            let steps = steps.iter().map(|steps| {
+                steps.iter().map(|&(to, cost, rise)| Step { to, cost, rise }).collect()
+            });
+            let problem = problem(steps.collect(), end);
+            let scope = Scope {
+                starts: vec![(0, 0)],
+                allowed: vec![true; 4],
+                stop: problem.end.clone(),
+            };
+            let mut passes = Passes::new(&problem, of_pieces(&problem, &scope)).unwrap();
+            passes.learn_prices(&problem, &[(0, 1, 0)]);
+            for (length, row) in (0u32..).zip(completions(&problem)) {
+                passes.load(length);
+                for (piece, row) in row.iter().enumerate() {
+                    for (drift, &cost) in (-LIMIT..).zip(row) {
+                        prop_assert!(passes.rest(&problem, length, piece, Some(drift)) <= cost);
+                    }
+                }
+            }
+        }
+    }
+
+    // Piece 0 climbs for nothing, or costs 10 to come down: in a band of 3, half of its joins cost.
+    #[test]
+    fn a_price_tells_what_staying_in_the_band_costs() {
+        let join = |to, cost, rise| Step { to, cost, rise };
+        let steps = vec![vec![join(0, 0, 1), join(0, 10, -1), join(1, 0, 0)], vec![], vec![], vec![]];
+        let problem = problem(steps, 202);
+        let scope = Scope { starts: vec![(0, 0)], allowed: vec![true; 4], stop: problem.end.clone() };
+        let mut passes = Passes::new(&problem, of_pieces(&problem, &scope)).unwrap();
+        passes.learn_prices(&problem, &[(0, 1, 0)]);
+        passes.load(1);
+        assert_eq!(passes.rest(&problem, 1, 0, None), 2);
+        // 197 to 199 joins of piece 0, of which 97 or more have to come down.
+        let least = passes.rest(&problem, 1, 0, Some(0));
+        assert!((940..=980).contains(&least), "{least}");
+    }
+}

@@ -18,39 +18,42 @@ use super::table::Weigh;
 pub(super) struct Recurrence {
     /// The number of the last row with this hash.
     last: FxHashMap<u64, usize>,
-    /// The least entry of each row.
-    least: Vec<i64>,
-    /// The period of the latest rows, how many in a row have it, and what they cost more.
-    run: (usize, usize, i64),
+    /// The hash of each row, and its least entry, or that of the last row before it that has one.
+    rows: Vec<(u64, i64)>,
+    /// The period that the latest rows have, how many in a row have it, and what they cost more.
+    period: usize,
+    met: usize,
+    more: i64,
 }
 
 impl Recurrence {
     /// No rows yet.
     pub(super) fn new() -> Self {
-        Self { last: FxHashMap::default(), least: Vec::new(), run: (0, 0, 0) }
+        Self { last: FxHashMap::default(), rows: Vec::new(), period: 0, met: 0, more: 0 }
     }
 
     /// Takes up the next row. The period, once so many `wanted` rows in a row have one.
     pub(super) fn next<W: Weigh>(&mut self, row: &[W], wanted: usize) -> Option<usize> {
-        let number = self.least.len();
-        let Some(least) = row.iter().filter_map(|weight| weight.as_cost()).min() else {
-            self.least.push(0);
-            self.run = (0, 0, 0);
-            return None;
-        };
+        let number = self.rows.len();
+        let least = row.iter().filter_map(|weight| weight.as_cost()).min();
+        let least = least.or(self.rows.last().map(|&(_, least)| least)).unwrap_or(0);
         let mut hasher = FxHasher::default();
         for weight in row {
             hasher.write_i64(weight.as_cost().map_or(-1, |cost| cost - least));
         }
-        self.least.push(least);
-        let before = self.last.insert(hasher.finish(), number);
-        self.run = match before.map(|before| (number - before, least - self.least[before])) {
-            Some((period, more)) if (period, more) == (self.run.0, self.run.2) => {
-                (period, self.run.1 + 1, more)
-            }
-            Some((period, more)) => (period, 1, more),
-            None => (0, 0, 0),
-        };
-        (self.run.1 >= wanted).then_some(self.run.0)
+        let hash = hasher.finish();
+        self.rows.push((hash, least));
+        let last = self.last.insert(hash, number);
+        let goes_on = self.period > 0
+            && number.checked_sub(self.period).is_some_and(|at| self.rows[at] == (hash, least - self.more));
+        if goes_on {
+            self.met += 1;
+        } else if let Some(last) = last {
+            // Simple rows look like others that are nearer than a period, so the present period is tried first.
+            (self.period, self.met, self.more) = (number - last, 1, least - self.rows[last].1);
+        } else {
+            (self.period, self.met) = (0, 0);
+        }
+        (self.met >= wanted).then_some(self.period)
     }
 }
