@@ -304,6 +304,12 @@ impl Band {
                 scale(found.min_feature, tolerances.min_feature_mm(), "--min-feature")
             }
             Mismatch::Gap { .. } => scale(found.min_gap, tolerances.min_gap_mm(), "--min-gap"),
+            Mismatch::Components { .. } | Mismatch::Holes { .. } => {
+                let chord_mm = tolerances.chord_mm();
+                format!(
+                    "; what is finer than the chord error was lost: try a --chord smaller than {chord_mm} mm or a larger --width"
+                )
+            }
             _ => String::new(),
         };
         JobError::Mismatch { file, mismatch, remedy }
