@@ -12,6 +12,19 @@ band $exemplars/vine.svg --along circle:65mm --width 14mm --components 1 --close
 band $exemplars/lace.svg --along path:fixtures/curves/wave.svg --width 14mm --components 1 -o $pictures/lace.png
 band $exemplars/strokes.svg --along path:fixtures/curves/oval.svg#oval --width 14mm --components 1 --closed-pattern -o $pictures/oval.png
 "$openwork" rect $exemplars/filigree.svg --size 120x80mm --components 1 -o $pictures/panel.png --quiet
+row=$(mktemp -d)
+trap 'rm -rf "$row"' EXIT
+for exemplar in filigree vine; do
+  one="$exemplars/$exemplar.svg --components 1"
+  # shellcheck disable=SC2086
+  {
+    band $one --along line:240mm --width 20mm -o "$row/$exemplar-1.svg"
+    band $one --along circle:80mm --width 20mm -o "$row/$exemplar-2.svg"
+    band $one --along path:fixtures/curves/heart.svg#heart --round 14mm --width 14mm -o "$row/$exemplar-3.svg"
+    "$openwork" rect $one --size 120x80mm -o "$row/$exemplar-4.svg" --quiet
+  }
+done
+cargo run --release --locked --quiet --example contact_sheet -- $pictures/wall.png 4 "$row"/*.svg
 cargo run --release --locked --quiet --example stitching -- --pictures $pictures/stitching.png > /dev/null
 "$openwork" analyze $exemplars/vine.svg -o $pictures/analysis.png --quiet
 cargo run --release --locked --quiet --example persistences -- $exemplars/vine.svg $pictures/persistences.png

@@ -3,14 +3,14 @@
 //! A [`Walk`] with a threshold at or above the optimum finds it, and looks only at runs whose estimate is within
 //! the threshold. So the threshold begins at the least estimate there is and grows, each time to where about
 //! twice as many runs come in, until a walk finds a run: then everything cheaper was looked at, and it is the
-//! optimum. The first walks know only the pieces; when they take more than a few labels, the dear estimates are
-//! made.
+//! optimum. A step that lets in far too many is taken back. The first walks know only the pieces; the more work the
+//! walks turn out to take, the dearer the estimates that are made for them ([`Level`]).
 //!
 //! Drift is not part of a state until a run has left the band. As long as no run that was dropped for that had
 //! a smaller estimate than the answer, the answer is the optimum; otherwise a run that was dropped may have
 //! stood for one that stays in the band, and the walks are taken again with the drift in the state.
 //!
-//! Past the memory limit a beam finds a run if it can. The last threshold at which nothing was found says how
+//! After the work of as many labels as the memory limit holds, a beam finds a run if it can. The last threshold at which nothing was found says how
 //! far from the optimum that may be.
 
 use super::estimates::Level;
