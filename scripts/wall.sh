@@ -97,7 +97,7 @@ told() { # NAME: the outcome in a cell of the table
       field() { sed -nE "s/^ *\"$2\": ([^,{[]+),?$/\1/p" "$out/$1.json" | head -n 1; }
       echo "verified: $(field "$1" components) c, $(field "$1" holes) h, $seconds s" ;;
     3) echo "refused: $(sed -nE 's/^openwork: //; s/\|/\//g; 1p' "$out/$1.log" | cut -c 1-160), $seconds s" ;;
-    *) echo "**FAILED ($status)**: $(head -n 1 "$out/$1.log" | cut -c 1-160)" ;;
+    *) echo "**FAILED ($status)**: $(head -n 1 "$out/$1.log" | sed "s|$out/||g" | cut -c 1-160)" ;;
   esac
 }
 
