@@ -171,21 +171,12 @@ fn descriptor(piece: &Piece, Loops { islands, holes }: Loops) -> Descriptor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::planar::{FillRule, GridPoint, Tolerances};
+    use crate::planar::{self, FillRule, Tolerances};
     use crate::reeb::{ReebGraph, Slicing, SlicingRule};
     use proptest::prelude::*;
 
     fn region(boxes: &[(i64, i64, i64, i64)]) -> Region {
-        let step = 100_000_000;
-        let paths: Vec<Vec<GridPoint>> = boxes
-            .iter()
-            .map(|&(x, y, w, h)| {
-                [(x, y), (x + w, y), (x + w, y + h), (x, y + h)]
-                    .map(|(x, y)| GridPoint::new(x * step, y * step))
-                    .to_vec()
-            })
-            .collect();
-        Region::fill(Grid::for_extent(100.0).unwrap(), &paths, FillRule::EvenOdd)
+        planar::boxes(100_000_000, FillRule::EvenOdd, boxes)
     }
 
     fn pieces(region: &Region, rule: SlicingRule) -> Vec<Piece> {

@@ -10,6 +10,8 @@
 //! even sharing a vertex. Its number of components is therefore its number of exteriors, its number of
 //! holes the number of clockwise contours, and nothing hangs together by a point.
 
+#[cfg(test)]
+mod boxes;
 mod contour;
 mod grid;
 mod index;
@@ -21,6 +23,8 @@ mod split;
 mod tolerances;
 mod touch;
 
+#[cfg(test)]
+pub(crate) use boxes::boxes;
 pub use contour::Contour;
 pub use grid::{Grid, GridError, GridPoint, orient};
 pub use index::{EdgeIndex, IndexedEdge};

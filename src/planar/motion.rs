@@ -28,7 +28,7 @@ impl Region {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::planar::{FillRule, Grid};
+    use crate::planar::{self, FillRule};
     use proptest::prelude::*;
 
     proptest! {
@@ -37,13 +37,7 @@ mod tests {
             boxes in prop::collection::vec((-50i64..50, -50i64..50, 1i64..30, 1i64..30), 1..8),
             by in (-100i64..100, -100i64..100),
         ) {
-            let paths: Vec<Vec<GridPoint>> = boxes
-                .iter()
-                .map(|&(x, y, w, h)| [(x, y), (x + w, y), (x + w, y + h), (x, y + h)]
-                        .map(|(x, y)| GridPoint::new(x * 1_000_000, y * 1_000_000))
-                        .to_vec())
-                .collect();
-            let region = Region::fill(Grid::for_extent(100.0).unwrap(), &paths, FillRule::EvenOdd);
+            let region = planar::boxes(1_000_000, FillRule::EvenOdd, &boxes);
             prop_assume!(!region.is_empty());
             let by = GridPoint::new(by.0, by.1);
             let back = GridPoint::new(-by.x, -by.y);

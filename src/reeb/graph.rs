@@ -81,18 +81,12 @@ impl ReebGraph {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::planar::{FillRule, Grid};
+    use crate::planar::{self, FillRule};
     use petgraph::algo::connected_components;
     use proptest::prelude::*;
 
     fn region(boxes: &[(i64, i64, i64, i64)]) -> Region {
-        let paths: Vec<Vec<GridPoint>> = boxes
-            .iter()
-            .map(|&(x, y, w, h)| {
-                [(x, y), (x + w, y), (x + w, y + h), (x, y + h)].map(|(x, y)| GridPoint::new(x, y)).to_vec()
-            })
-            .collect();
-        Region::fill(Grid::for_extent(100.0).unwrap(), &paths, FillRule::EvenOdd)
+        planar::boxes(1, FillRule::EvenOdd, boxes)
     }
 
     fn events(region: &Region) -> Vec<Event> {

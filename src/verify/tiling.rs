@@ -189,19 +189,10 @@ fn intervals(tile: &Region, at: i64, coordinates: impl Fn(GridPoint) -> (i64, i6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::planar::{FillRule, Grid};
+    use crate::planar::{self, FillRule, Grid};
 
     fn tile(boxes: &[(i64, i64, i64, i64)]) -> Region {
-        let step = 10_000_000;
-        let paths: Vec<Vec<GridPoint>> = boxes
-            .iter()
-            .map(|&(x, y, w, h)| {
-                [(x, y), (x + w, y), (x + w, y + h), (x, y + h)]
-                    .map(|(x, y)| GridPoint::new(x * step, y * step))
-                    .to_vec()
-            })
-            .collect();
-        Region::fill(Grid::for_extent(100.0).unwrap(), &paths, FillRule::NonZero)
+        planar::boxes(10_000_000, FillRule::NonZero, boxes)
     }
 
     #[test]
