@@ -127,15 +127,14 @@ impl Way {
                 JobError::Refused("no sequence of these rows has what is wanted".to_owned())
             })?,
         };
-        let joins = || plan.sequence.windows(2).filter_map(|w| cut.catalogue.join(w[0], w[1]));
-        let jumps = joins().filter(|join| !join.is_natural).count();
+        let jumps = cut.catalogue.jumps_of(&plan.sequence);
         let rows = map.curve().length_mm() / strip.height_mm();
         if jumps as f64 > wish.scraps * JOINS_PER_ROW * rows.max(1.0) {
             return Err(JobError::Refused(format!(
                 "rows would be joined {jumps} times where {rows:.1} rows fit the height, from scraps of the pattern"
             )));
         }
-        let misfit = joins().map(|join| join.misfit).fold(0.0, f64::max);
+        let misfit = cut.catalogue.joins_of(&plan.sequence).map(|join| join.misfit).fold(0.0, f64::max);
         Ok(Self { job, cut, plan, planned, misfit })
     }
 

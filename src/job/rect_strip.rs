@@ -134,7 +134,6 @@ impl Strips {
             }
             Err(error) => {
                 self.refused.push(wish);
-                self.known.push((wish, None));
                 Err(error)
             }
         }
@@ -157,8 +156,7 @@ impl Strips {
         }
         let map = flat_map(self.map_width_mm, cut.height_mm)?;
         let (plan, planned) = plan_run(&job, &mut cut, &map, clock)?;
-        let joins = plan.sequence.windows(2).filter_map(|w| cut.catalogue.join(w[0], w[1]));
-        let jumps = joins.filter(|join| !join.is_natural).count();
+        let jumps = cut.catalogue.jumps_of(&plan.sequence);
         let runs = self.map_width_mm / cut.catalogue.width_mm();
         if jumps as f64 > wish.scraps * JUMPS_PER_RUN * runs.max(1.0) {
             return Err(JobError::Refused(format!(

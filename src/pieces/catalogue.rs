@@ -223,6 +223,16 @@ impl Catalogue {
         self.joins[from].iter().find(|j| j.to == to)
     }
 
+    /// The joins of a sequence, in order, of those that were kept.
+    pub fn joins_of(&self, sequence: &[usize]) -> impl Iterator<Item = &Join> {
+        sequence.windows(2).filter_map(|pair| self.join(pair[0], pair[1]))
+    }
+
+    /// The number of joins of a sequence at which the exemplar does not go on as it is.
+    pub fn jumps_of(&self, sequence: &[usize]) -> usize {
+        self.joins_of(sequence).filter(|join| !join.is_natural).count()
+    }
+
     /// The same catalogue for open runs that begin and end as the exemplar does.
     pub fn with_own_ends_only(mut self) -> Self {
         self.own_ends_only = true;

@@ -180,7 +180,7 @@ impl Tangent {
 fn price(problem: &Problem<'_>, graph: &Arc<Graph>, starts: &[(usize, u32, Cost)]) -> Option<i64> {
     let longest = *problem.window.end();
     let part = (PRICING_WORK as f64 / graph.work(longest).max(1) as f64).min(1.0);
-    // The part of the band that belongs to so much of the length, in thousandths of a unit: exact, and never 0.
+    // A shorter run may rise by as much less of the band, but by one unit at least.
     let shorter = |bins: u32| ((f64::from(bins) * part) as u32).max(bins.min(4 * graph.widest() as u32));
     let window = shorter(*problem.window.start())..=shorter(longest);
     let limit =
