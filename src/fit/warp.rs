@@ -273,7 +273,8 @@ mod tests {
                     prop_assert!((warp.map(at).y - target.y_mm).abs() < 1e-9);
                     let given = end.slope() * side.heights.slope_at(ends.len() - k);
                     if given.abs() < STEEPEST && reach > 1e-3 {
-                        let step = DVec2::new(1.0, end.slope()) * inward * reach * 1e-5;
+                        // Heights may bend by 5000 per millimetre between near endpoints: the step is well below.
+                        let step = DVec2::new(1.0, end.slope()) * inward * reach * 1e-7;
                         let moved = warp.map(at + step) - warp.map(at);
                         let wanted = (target.tangent.y / target.tangent.x).clamp(-STEEPEST, STEEPEST);
                         prop_assert!((moved.y / moved.x - wanted).abs() < 0.02 * (1.0 + wanted.abs()),
