@@ -22,12 +22,13 @@ use super::reach::{is_never, is_out_of_range};
 use super::table::NEVER;
 use crate::topology::Automaton;
 
-/// Effort after which the dear estimates are made, where that is not dear at all and at most. Most goals near the
-/// exemplar's own topology need less.
-const SHORT: [usize; 2] = [300, 20_000];
-/// Additions of the pass over the pieces for each label of that effort: the more a pass takes, the longer the search
-/// does without.
-const ADDITIONS_PER_LABEL: usize = 32;
+/// Effort after which dear estimates are made, at least and at most: as much as they take. Most goals near the exemplar's
+/// own topology need less.
+const SHORT: [usize; 2] = [300, 150_000];
+/// Additions in a pass that take as long as a label.
+const ADDITIONS_PER_LABEL: usize = 200;
+/// A pass that knows the topology takes about as many times as long as one over the pieces alone.
+const TOPOLOGY: usize = 8;
 /// Effort after which the dearest of all is made, the pass over all pairs of piece and state with the drift.
 const LONG: usize = 1_500_000;
 /// A threshold is too high when it lets in so many times the effort of the last one.
@@ -47,6 +48,7 @@ const NARROWEST_BEAM: usize = 30;
 pub(super) fn cheapest(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
     let families = families(problem, automaton.goal().closed_pattern);
     let threshold = families.iter().map(Family::estimate).min().unwrap_or(NEVER);
+    let short = short(problem, &families);
     let search = Cheapest {
         problem,
         families,
@@ -54,7 +56,7 @@ pub(super) fn cheapest(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -> 
         floor: threshold,
         best: None,
         by_drift: false,
-        short: short(problem),
+        short,
         level: if automaton.goal().is_free() { Level::Topology } else { Level::Pieces },
         labels: 0,
         effort: 0,
@@ -67,11 +69,13 @@ pub(super) fn cheapest(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -> 
     search.solve(automaton)
 }
 
-/// Effort after which dear estimates are made.
-fn short(problem: &Problem<'_>) -> usize {
+/// Effort after which dear estimates are made: of a ring, each member then has a pass of its own.
+fn short(problem: &Problem<'_>, families: &[Family]) -> usize {
     let joins: usize = problem.steps.iter().map(Vec::len).sum();
+    let passes = TOPOLOGY + families.iter().map(|f| f.members.len()).sum::<usize>();
+    let additions = joins.saturating_mul(*problem.window.end() as usize).saturating_mul(passes);
     let [least, most] = SHORT;
-    (joins.saturating_mul(*problem.window.end() as usize) / ADDITIONS_PER_LABEL).clamp(least, most)
+    (additions / ADDITIONS_PER_LABEL).clamp(least, most)
 }
 
 struct Cheapest<'p> {
@@ -180,9 +184,9 @@ impl Cheapest<'_> {
     /// Effort after which the estimates of the next level are made; `None` when there is none.
     fn patience(&self) -> Option<usize> {
         match (self.level, self.by_drift) {
-            (Level::Pieces, _) | (Level::Topology, true) => Some(self.short),
+            (Level::Pieces | Level::Topology, _) | (Level::Fine, true) => Some(self.short),
             (Level::Prices, _) => Some(LONG),
-            (Level::Topology, false) | (Level::Drift, _) => None,
+            (Level::Fine, false) | (Level::Drift, _) => None,
         }
     }
 
@@ -190,7 +194,8 @@ impl Cheapest<'_> {
     fn learn(&mut self, automaton: &mut Automaton<'_>) {
         self.level = match (self.level, self.by_drift) {
             (Level::Pieces, false) => Level::Topology,
-            (Level::Pieces | Level::Topology, _) => Level::Prices,
+            (Level::Topology, false) => Level::Fine,
+            (Level::Pieces | Level::Topology | Level::Fine, _) => Level::Prices,
             (Level::Prices | Level::Drift, _) => Level::Drift,
         };
         self.effort_before = self.effort;

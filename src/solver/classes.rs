@@ -5,17 +5,22 @@
 //! estimate of a run is the greatest over its classes. With holes wanted too, the Euler characteristic is known
 //! besides: with one component it says how many holes there are going to be. Where that makes the graph too large,
 //! holes are left out of account.
+//!
+//! Small classes say nearly all: what the larger ones say more is seldom worth their nodes, and a pass over so many that
+//! it has to be given up early says less.
 
 use rustc_hash::FxHashMap;
 
-use super::estimates::NODE_LIMIT;
 use super::graph::{Explored, Joins, Scope};
 use super::priced::Passes;
 use super::problem::{Cost, Problem};
+use super::table::NEVER;
 use crate::topology::{Automaton, Descriptor, Goal, Shape, StateId};
 
-/// The portals of classes that are told from the rest: the first that is affordable.
-const CLASS_SIZES: [usize; 4] = [64, 4, 2, 1];
+/// The portals of classes that are told from the rest, at most.
+const CLASS_SIZES: [usize; 4] = [1, 2, 4, 64];
+/// By so much the nodes grow from each of them to the next, about.
+const GROWTH: usize = 8;
 
 /// A class against the rest, by number, and the Euler characteristic where it is read.
 type ClassKey = (u32, i32);
@@ -27,6 +32,10 @@ pub(super) struct Classes {
     pub(super) passes: Passes,
     /// Whether they were asked to know prices.
     has_prices: bool,
+    /// Nodes at which the graph is given up.
+    limit: usize,
+    /// The least that any run costs.
+    least: Cost,
     /// Partitions of at most two classes, by number.
     names: Names,
     /// The nodes of each piece and state that were met, and how many classes have no node.
@@ -84,6 +93,12 @@ impl Names {
         found
     }
 
+    /// The same for a piece by itself, each with its Euler characteristic if it is read.
+    fn keys(&mut self, goal: Goal, piece: &Descriptor) -> Vec<ClassKey> {
+        let euler = goal.holes.map_or(0, |_| piece.euler() as i32);
+        self.classes(piece).into_iter().map(|class| (class, euler)).collect()
+    }
+
     /// The classes of a run with these connections that `piece` is joined to, and by how much χ grows; `None`
     /// when something is closed that should not be.
     fn join(&mut self, problem: &Problem<'_>, id: u32, piece: usize) -> Option<JoinedClasses> {
@@ -102,53 +117,96 @@ impl Names {
 }
 
 impl Classes {
-    /// The estimate for one component; `None` for other goals, and when it would be too large.
-    pub(super) fn new(problem: &Problem<'_>, goal: Goal, scope: &Scope) -> Option<Self> {
+    /// The estimate for one component that says most of those with at most `limit` nodes, and of a `coarser` one; `None`
+    /// for other goals, and when even the coarsest would be too large.
+    pub(super) fn new(
+        problem: &Problem<'_>,
+        goal: Goal,
+        scope: &Scope,
+        limit: usize,
+        coarser: Option<Self>,
+    ) -> Option<Self> {
         if !goal.is_one_component() {
             return None;
         }
+        let mut best = coarser;
         // Where the holes make it too large, they are not read.
         let without_holes = goal.holes.map(|_| Goal { holes: None, ..goal });
-        let goals = std::iter::once(goal).chain(without_holes);
-        goals.flat_map(|goal| CLASS_SIZES.map(|size| (goal, size))).find_map(|(goal, most_portals)| {
-            let mut names = Names { most_portals, ..Names::default() };
-            let (explored, passes) = Self::explore(problem, goal, scope, &mut names, Vec::new())?;
-            let nodes = FxHashMap::default();
-            Some(Self { goal, explored, passes, has_prices: false, names, nodes, missing: 0 })
-        })
+        for goal in std::iter::once(goal).chain(without_holes) {
+            let mut found = None;
+            for most_portals in CLASS_SIZES {
+                let names = Names { most_portals, ..Names::default() };
+                let Some(next) = Self::explored(problem, goal, scope, limit, names) else { break };
+                let is_last = next.passes.graph().len() * GROWTH > limit;
+                found = Some(next);
+                if is_last {
+                    break;
+                }
+            }
+            let is_better = |next: &Self| best.as_ref().is_none_or(|best| best.least < next.least);
+            if let Some(next) = found {
+                best = Some(next).filter(is_better).or(best);
+                break;
+            }
+        }
+        best
+    }
+
+    /// The estimate with these classes; `None` when it would be too large.
+    fn explored(
+        problem: &Problem<'_>,
+        goal: Goal,
+        scope: &Scope,
+        limit: usize,
+        mut names: Names,
+    ) -> Option<Self> {
+        let (explored, mut passes) = Self::explore(problem, goal, scope, limit, &mut names, Vec::new())?;
+        let mut least = NEVER;
+        for &(piece, cost) in &scope.starts {
+            let length = problem.widths[piece];
+            passes.load(length.min(*problem.window.end()));
+            let run = &problem.descriptors[piece];
+            let nodes = names.keys(goal, run).into_iter().filter_map(|key| explored.node(piece, key));
+            let rest = nodes.map(|node| passes.rest(problem, length, node, None)).max();
+            least = least.min(rest.unwrap_or(NEVER).saturating_add(cost));
+        }
+        let nodes = FxHashMap::default();
+        Some(Self { goal, explored, passes, has_prices: false, limit, least, names, nodes, missing: 0 })
     }
 
     fn explore(
         problem: &Problem<'_>,
         goal: Goal,
         scope: &Scope,
+        limit: usize,
         names: &mut Names,
         seeds: Vec<(usize, ClassKey)>,
     ) -> Option<(Explored<ClassKey>, Passes)> {
-        let euler = |run: &Descriptor| if goal.holes.is_some() { run.euler() as i32 } else { 0 };
         let mut starts = seeds;
         for &(piece, _) in &scope.starts {
             let run = &problem.descriptors[piece];
             if run.closed() + u32::from(run.open() > 0) <= 1 {
-                starts.extend(names.classes(run).into_iter().map(|class| (piece, (class, euler(run)))));
+                starts.extend(names.keys(goal, run).into_iter().map(|key| (piece, key)));
             }
         }
         let expand = |piece: usize, &(class, euler): &ClassKey, joins: &mut Joins<ClassKey>| {
             for step in problem.steps[piece].iter().filter(|s| scope.allowed[s.to]) {
                 let Some((classes, more)) = names.join(problem, class, step.to) else { continue };
                 let euler = if goal.holes.is_some() { euler + more } else { 0 };
-                if goal.holes.is_some_and(|holes| 1 - i64::from(euler) > i64::from(holes.most())) {
-                    continue;
+                // Holes are what components have more than χ, and never become fewer.
+                let least_holes = |&class: &u32| {
+                    let run = &names.partitions[class as usize];
+                    i64::from(run.closed() + run.open()) - i64::from(euler)
+                };
+                let holes = classes.iter().map(least_holes).max().unwrap_or(0);
+                if goal.holes.is_none_or(|wanted| holes <= i64::from(wanted.most())) {
+                    joins.push((*step, classes.iter().map(|&class| (class, euler)).collect()));
                 }
-                joins.push((*step, classes.iter().map(|&class| (class, euler)).collect()));
             }
             let run = &names.partitions[class as usize];
             scope.stop[piece].filter(|_| may_stop(goal, problem.shape, run, euler))
         };
-
-        let explored = Explored::new(problem, starts, problem.share(NODE_LIMIT), expand);
-
-        let mut explored = explored?;
+        let mut explored = Explored::new(problem, starts, limit, expand)?;
         let passes = Passes::new(problem, std::mem::take(&mut explored.graph))?;
         Some((explored, passes))
     }
@@ -158,10 +216,8 @@ impl Classes {
         let Self { goal, explored, passes, names, .. } = self;
         let mut starts = Vec::new();
         for &(piece, cost) in &scope.starts {
-            let run = &problem.descriptors[piece];
-            let euler = if goal.holes.is_some() { run.euler() as i32 } else { 0 };
-            let nodes =
-                names.classes(run).into_iter().filter_map(|class| explored.node(piece, (class, euler)));
+            let keys = names.keys(*goal, &problem.descriptors[piece]);
+            let nodes = keys.into_iter().filter_map(|key| explored.node(piece, key));
             starts.extend(nodes.map(|node| (node, problem.widths[piece], cost)));
         }
         passes.learn_prices(problem, &starts);
@@ -201,10 +257,9 @@ impl Classes {
             let keys = keys_of(self.goal, automaton, &mut self.names, state);
             seeds.extend(keys.into_iter().map(|key| (piece as usize, key)));
         }
-
         self.missing = 0;
-        let Some((explored, passes)) = Self::explore(problem, self.goal, scope, &mut self.names, seeds)
-        else {
+        let Self { goal, limit, names, .. } = self;
+        let Some((explored, passes)) = Self::explore(problem, *goal, scope, *limit, names, seeds) else {
             return false;
         };
         (self.explored, self.passes) = (explored, passes);

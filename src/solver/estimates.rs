@@ -20,8 +20,8 @@ use super::problem::{Cost, Problem};
 use super::table::{NEVER, Table};
 use crate::topology::{Automaton, StateId};
 
-/// Nodes of a graph at which it is given up.
-pub(super) const NODE_LIMIT: usize = 60_000;
+/// Nodes of a graph at which it is given up: of one that is made soon, and of one that is made when much was searched.
+const NODE_LIMITS: [usize; 2] = [6_000, 60_000];
 /// Additions in the pass that knows state and drift beyond which it is not begun: about a second.
 const WORK_LIMIT: usize = 1_000_000_000;
 /// Additions in the pass that knows the drift, of which there are some 700 million in a second.
@@ -31,8 +31,10 @@ const DRIFT_WORK_LIMIT: usize = 10_000_000_000;
 pub(super) enum Level {
     /// Pieces and joins.
     Pieces,
-    /// And how portals are connected.
+    /// And how portals are connected, where that is simple.
     Topology,
+    /// Or where it is not.
+    Fine,
     /// And what rising costs in the end.
     Prices,
     /// And the drift itself.
@@ -58,24 +60,27 @@ pub(super) struct Estimates {
 }
 
 impl Estimates {
-    /// Makes the estimates that know topology.
+    /// Makes the estimates that know topology, as far as they are small or, when they are to be `fine`, as far as they
+    /// are affordable.
     pub(super) fn learn_topology(
         &mut self,
         problem: &Problem<'_>,
         automaton: &mut Automaton<'_>,
         scope: &Scope,
+        is_fine: bool,
     ) {
-        if automaton.goal().is_free() {
+        if automaton.goal().is_free() || self.exact.is_some() {
             return;
         }
-        self.exact =
-            triples(problem, automaton, scope, false, problem.share(NODE_LIMIT)).and_then(|mut explored| {
-                let passes = Passes::new(problem, std::mem::take(&mut explored.graph))?;
-                Some((explored, passes))
-            });
-        if self.exact.is_none() {
-            self.classes = Classes::new(problem, automaton.goal(), scope);
-        }
+        let limit = problem.share(NODE_LIMITS[usize::from(is_fine)]);
+        self.exact = triples(problem, automaton, scope, false, limit).and_then(|mut explored| {
+            let passes = Passes::new(problem, std::mem::take(&mut explored.graph))?;
+            Some((explored, passes))
+        });
+        self.classes = match (self.exact.is_some(), self.classes.take()) {
+            (true, _) => None,
+            (false, coarser) => Classes::new(problem, automaton.goal(), scope, limit, coarser),
+        };
     }
 
     /// Makes what is known know the drift, by prices.
@@ -115,7 +120,7 @@ impl Estimates {
         automaton: &mut Automaton<'_>,
         scope: &Scope,
     ) {
-        let limit = problem.share(NODE_LIMIT);
+        let limit = problem.share(NODE_LIMITS[1]);
         let longest = *problem.window.end();
         if self.exact.is_some() || automaton.goal().is_free() {
             let is_short = |found: &Explored<_>| found.graph.work(longest) <= problem.share(WORK_LIMIT);

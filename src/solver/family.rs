@@ -139,8 +139,8 @@ impl Family {
 
     /// Makes the estimates up to `level`, and looks at the members again in their light.
     pub(super) fn learn(&mut self, problem: &Problem<'_>, automaton: &mut Automaton<'_>, level: Level) {
-        if self.level < Level::Topology {
-            self.estimates.learn_topology(problem, automaton, &self.scope);
+        if self.level < Level::Fine {
+            self.estimates.learn_topology(problem, automaton, &self.scope, level >= Level::Fine);
         }
         if self.level < Level::Prices && level >= Level::Prices {
             self.estimates.learn_prices(problem, automaton, &self.scope);

@@ -13,6 +13,8 @@ pub(super) struct Label {
     pub(super) cost: Cost,
     /// What it is weighed by against others: the cost, with a penalty for repetition where there is one.
     pub(super) weight: Cost,
+    /// No complete run that begins with it costs less.
+    pub(super) bound: Cost,
     pub(super) piece: u32,
     pub(super) state: StateId,
     pub(super) drift: i32,
@@ -33,6 +35,8 @@ pub(super) struct Run {
     pub(super) cost: Cost,
     /// As in [`Label`].
     pub(super) weight: Cost,
+    /// As in [`Label`].
+    pub(super) bound: Cost,
 }
 
 /// No label.
@@ -107,7 +111,7 @@ impl Labels {
 
     /// Adds a run of `length` unless another can stand for it; the ones that it can stand for are superseded.
     pub(super) fn add(&mut self, automaton: &mut Automaton<'_>, run: Run, parent: u32) -> Option<u32> {
-        let Run { length, piece, state, drift, cost, weight } = run;
+        let Run { length, piece, state, drift, cost, weight, bound } = run;
         let at = self.store.len() as u32;
         let layer = &mut self.layers[(length - self.length) as usize];
         let place = (piece, automaton.rank(state), if self.by_drift { drift } else { 0 });
@@ -133,7 +137,8 @@ impl Labels {
             link = other.before;
         }
         let before = std::mem::replace(head, at);
-        self.store.push(Label { cost, weight, piece, state, drift, parent, before, is_superseded: false });
+        let is_superseded = false;
+        self.store.push(Label { cost, weight, bound, piece, state, drift, parent, before, is_superseded });
         layer.members.push(at);
         self.made += 1;
         Some(at)

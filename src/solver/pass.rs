@@ -141,7 +141,7 @@ impl Walk<'_> {
             let length = problem.widths[piece];
             self.load(length.min(longest));
             if let Some(state) = automaton.start(piece) {
-                let run = Run { length, piece: piece as u32, state, drift: 0, cost, weight: cost };
+                let run = Run { length, piece: piece as u32, state, drift: 0, cost, weight: cost, bound: cost };
                 self.meet(automaton, &mut labels, &mut passage, repetition.as_mut(), run, NONE);
             }
         }
@@ -155,7 +155,7 @@ impl Walk<'_> {
             if members.len() > self.width {
                 let estimate = |at: &u32| {
                     let label = labels.get(*at);
-                    label.weight + self.pieces.at(length, label.piece as usize)
+                    label.bound + (label.weight - label.cost)
                 };
                 members.sort_by_cached_key(|at| (estimate(at), *at));
                 members.truncate(self.width);
@@ -193,7 +193,7 @@ impl Walk<'_> {
                     }
                     let Some(state) = automaton.step(label.state, step.to) else { continue };
                     let drift = label.drift.saturating_add(step.rise);
-                    let run = Run { length, piece: step.to as u32, state, drift, cost, weight: cost };
+                    let run = Run { length, piece: step.to as u32, state, drift, cost, weight: cost, bound: label.bound };
                     self.meet(automaton, &mut labels, &mut passage, repetition.as_mut(), run, at);
                 }
             }
@@ -231,9 +231,10 @@ impl Walk<'_> {
         let known_drift = self.by_drift.then_some(drift);
         let rest =
             plain.max(self.estimates.rest(self.problem, automaton, (length, piece, state, known_drift)));
-        let mut estimate = cost.saturating_add(rest);
+        // What is known of the run before holds for it with any piece more.
+        let mut run = Run { bound: run.bound.max(cost.saturating_add(rest)), ..run };
+        let mut estimate = run.bound;
         let correlations = repetition.as_ref().map(|r| r.correlations(labels, parent, piece));
-        let mut run = run;
         if let (Some(r), Some(correlations)) = (&repetition, &correlations) {
             let penalty = r.variety.penalty(correlations);
             estimate = estimate.saturating_add(penalty);

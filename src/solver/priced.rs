@@ -18,7 +18,7 @@ use super::table::{NEVER, TABLE_BUDGET, Table, Weigh};
 /// Additions in a pass: about a second. Beyond, costs are underestimated.
 const WORK_LIMIT: usize = 500_000_000;
 /// Additions in a pass that looks for a price. Longer runs are judged by shorter ones.
-const PRICING_WORK: usize = 20_000_000;
+const PRICING_WORK: usize = 2_000_000;
 /// Passes that look for a price, at most.
 const MOST_PASSES: usize = 8;
 /// The highest price of a unit of rise, in millionths: of a band that can only climb.
