@@ -12,7 +12,7 @@
 use rustc_hash::FxHashMap;
 
 use super::graph::{Explored, Joins, Scope};
-use super::priced::Passes;
+use super::priced::{Passes, WORK_LIMIT};
 use super::problem::{Cost, Problem};
 use super::table::NEVER;
 use crate::topology::{Automaton, Descriptor, Goal, Shape, StateId};
@@ -132,20 +132,24 @@ impl Classes {
         let mut best = coarser;
         // Where the holes make it too large, they are not read.
         let without_holes = goal.holes.map(|_| Goal { holes: None, ..goal });
+        let longest = *problem.window.end();
         for goal in std::iter::once(goal).chain(without_holes) {
-            let mut found = None;
+            let mut is_affordable = false;
             for most_portals in CLASS_SIZES {
                 let names = Names { most_portals, ..Names::default() };
                 let Some(next) = Self::explored(problem, goal, scope, limit, names) else { break };
-                let is_last = next.passes.graph().len() * GROWTH > limit;
-                found = Some(next);
+                is_affordable = true;
+                let graph = next.passes.graph();
+                let is_last =
+                    graph.len() * GROWTH > limit || graph.work(longest) > problem.share(WORK_LIMIT) / GROWTH;
+                if best.as_ref().is_none_or(|best| best.least < next.least) {
+                    best = Some(next);
+                }
                 if is_last {
                     break;
                 }
             }
-            let is_better = |next: &Self| best.as_ref().is_none_or(|best| best.least < next.least);
-            if let Some(next) = found {
-                best = Some(next).filter(is_better).or(best);
+            if is_affordable {
                 break;
             }
         }

@@ -16,7 +16,7 @@ use super::problem::{Cost, Problem};
 use super::table::{NEVER, TABLE_BUDGET, Table, Weigh};
 
 /// Additions in a pass: about a second. Beyond, costs are underestimated.
-const WORK_LIMIT: usize = 500_000_000;
+pub(super) const WORK_LIMIT: usize = 500_000_000;
 /// Additions in a pass that looks for a price. Longer runs are judged by shorter ones.
 const PRICING_WORK: usize = 2_000_000;
 /// Passes that look for a price, at most.
