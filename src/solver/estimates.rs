@@ -136,7 +136,7 @@ impl Estimates {
 
     /// Whether the estimate leaves nothing but the drift out of account.
     pub(super) fn is_exact(&self) -> bool {
-        self.exact.is_some()
+        self.exact.as_ref().is_some_and(|(_, passes)| passes.is_whole())
     }
 
     /// Makes the rows of `length` and of what a step leads to available.

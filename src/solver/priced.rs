@@ -62,6 +62,11 @@ impl Passes {
         self.priced.as_ref().is_some_and(|priced| priced.price.abs() >= HIGHEST)
     }
 
+    /// Whether the pass that does not know the drift underestimates nothing.
+    pub(super) fn is_whole(&self) -> bool {
+        !self.plain.is_cut_short()
+    }
+
     /// The graph.
     pub(super) fn graph(&self) -> &Graph {
         &self.graph

@@ -93,6 +93,8 @@ pub(super) struct Table<W> {
     /// The block that `rows` holds.
     loaded: usize,
     tail: Option<Tail<W>>,
+    /// Whether patience ended before the rows recurred.
+    is_cut_short: bool,
 }
 
 /// Rows that recur.
@@ -151,6 +153,7 @@ impl<W: Weigh> Table<W> {
             rows,
             loaded: 0,
             tail: None,
+            is_cut_short: false,
         };
         table.go_down(most_rows)?;
         Some(table)
@@ -182,6 +185,7 @@ impl<W: Weigh> Table<W> {
             let found = found.and_then(|period| Some((period, self.excess(row, period, true)?)));
             let found = match found {
                 None if depth >= most => {
+                    self.is_cut_short = true;
                     let period = (row + 1).min(depth - first);
                     Some((period, self.excess(row, period, false)?))
                 }
@@ -227,6 +231,11 @@ impl<W: Weigh> Table<W> {
         let strips: usize = self.strips.iter().map(Vec::len).sum();
         let tail = self.tail.as_ref().map_or(0, |tail| tail.rows.len());
         (self.rows.len() + strips + tail) * size_of::<W>()
+    }
+
+    /// Whether costs are underestimated, as the pass was given up early.
+    pub(super) fn is_cut_short(&self) -> bool {
+        self.is_cut_short
     }
 
     /// The graph.
