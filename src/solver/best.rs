@@ -117,7 +117,7 @@ impl Listing {
     ) -> Option<Self> {
         let mut explored = triples(problem, automaton, &scope, by_drift, NODE_LIMIT)?;
         let graph = std::mem::take(&mut explored.graph);
-        let table = Table::new(graph.into(), problem.window.clone(), 8 * TABLE_BUDGET, |cost, _| cost);
+        let table = Table::new(graph.into(), problem.window.clone(), 8 * TABLE_BUDGET, |toll| toll.cost);
         let mut list = Self { explored, table, runs: Vec::new(), open: BinaryHeap::new() };
         for &(piece, cost) in &scope.starts {
             let state = automaton.start(piece);

@@ -2,16 +2,16 @@
 //!
 //! How all portals of a run are connected is too much for a graph, but whether a portal belongs to one class or to
 //! the rest is not, and whatever completes the run must bring that class into contact with the rest before it ends. The
-//! estimate of a run is the greatest over its classes. With holes wanted too, the Euler characteristic is known
-//! besides: with one component it says how many holes there are going to be. Where that makes the graph too large,
-//! holes are left out of account.
+//! estimate of a run is the greatest over its classes. With holes wanted too, the Euler characteristic has a price
+//! ([`super::priced`]): it adds up along a run, and with one component says how many holes there are going to be.
 //!
 //! Small classes say nearly all: what the larger ones say more is seldom worth their nodes, and a pass over so many that
 //! it has to be given up early says less.
 
 use rustc_hash::FxHashMap;
 
-use super::graph::{Explored, Joins, Scope};
+use super::graph::{Explored, Joins, Scope, Toll};
+use super::price::Start;
 use super::priced::{Passes, WORK_LIMIT};
 use super::problem::{Cost, Problem};
 use super::table::NEVER;
@@ -22,13 +22,11 @@ const CLASS_SIZES: [usize; 4] = [1, 2, 4, 64];
 /// By so much the nodes grow from each of them to the next, about.
 const GROWTH: usize = 8;
 
-/// A class against the rest, by number, and the Euler characteristic where it is read.
-type ClassKey = (u32, i32);
-
 /// What is known of a run and its estimate: one class of its partition against all the others.
 pub(super) struct Classes {
     goal: Goal,
-    explored: Explored<ClassKey>,
+    /// By a class against the rest, by number.
+    explored: Explored<u32>,
     pub(super) passes: Passes,
     /// Whether they were asked to know prices.
     has_prices: bool,
@@ -38,9 +36,18 @@ pub(super) struct Classes {
     least: Cost,
     /// Partitions of at most two classes, by number.
     names: Names,
-    /// The nodes of each piece and state that were met, and how many classes have no node.
-    nodes: FxHashMap<(u32, StateId), (Vec<u32>, usize)>,
+    /// Of each piece and state that were met.
+    nodes: FxHashMap<(u32, StateId), Nodes>,
     missing: usize,
+}
+
+/// The classes of a run.
+struct Nodes {
+    found: Vec<u32>,
+    /// How many have no node.
+    unknown: usize,
+    /// The Euler characteristic of the run.
+    euler: i64,
 }
 
 /// The numbers of the classes that a join leads to, and what χ becomes more.
@@ -93,12 +100,6 @@ impl Names {
         found
     }
 
-    /// The same for a piece by itself, each with its Euler characteristic if it is read.
-    fn keys(&mut self, goal: Goal, piece: &Descriptor) -> Vec<ClassKey> {
-        let euler = goal.holes.map_or(0, |_| piece.euler() as i32);
-        self.classes(piece).into_iter().map(|class| (class, euler)).collect()
-    }
-
     /// The classes of a run with these connections that `piece` is joined to, and by how much χ grows; `None`
     /// when something is closed that should not be.
     fn join(&mut self, problem: &Problem<'_>, id: u32, piece: usize) -> Option<JoinedClasses> {
@@ -130,26 +131,16 @@ impl Classes {
             return None;
         }
         let mut best = coarser;
-        // Where the holes make it too large, they are not read.
-        let without_holes = goal.holes.map(|_| Goal { holes: None, ..goal });
-        let longest = *problem.window.end();
-        for goal in std::iter::once(goal).chain(without_holes) {
-            let mut is_affordable = false;
-            for most_portals in CLASS_SIZES {
-                let names = Names { most_portals, ..Names::default() };
-                let Some(next) = Self::explored(problem, goal, scope, limit, names) else { break };
-                is_affordable = true;
-                let graph = next.passes.graph();
-                let is_last =
-                    graph.len() * GROWTH > limit || graph.work(longest) > problem.share(WORK_LIMIT) / GROWTH;
-                if best.as_ref().is_none_or(|best| best.least < next.least) {
-                    best = Some(next);
-                }
-                if is_last {
-                    break;
-                }
+        for most_portals in CLASS_SIZES {
+            let names = Names { most_portals, ..Names::default() };
+            let Some(next) = Self::explored(problem, goal, scope, limit, names) else { break };
+            let graph = next.passes.graph();
+            let work = graph.work(*problem.window.end());
+            let is_last = graph.len() * GROWTH > limit || work > problem.share(WORK_LIMIT) / GROWTH;
+            if best.as_ref().is_none_or(|best| best.least < next.least) {
+                best = Some(next);
             }
-            if is_affordable {
+            if is_last {
                 break;
             }
         }
@@ -164,18 +155,20 @@ impl Classes {
         limit: usize,
         mut names: Names,
     ) -> Option<Self> {
-        let (explored, mut passes) = Self::explore(problem, goal, scope, limit, &mut names, Vec::new())?;
-        let mut least = NEVER;
+        let (explored, passes) = Self::explore(problem, goal, scope, limit, &mut names, Vec::new())?;
+        let nodes = FxHashMap::default();
+        let mut found =
+            Self { goal, explored, passes, has_prices: false, limit, least: NEVER, names, nodes, missing: 0 };
+        let starts = found.starts(problem, scope);
         for &(piece, cost) in &scope.starts {
             let length = problem.widths[piece];
-            passes.load(length.min(*problem.window.end()));
-            let run = &problem.descriptors[piece];
-            let nodes = names.keys(goal, run).into_iter().filter_map(|key| explored.node(piece, key));
-            let rest = nodes.map(|node| passes.rest(problem, length, node, None)).max();
-            least = least.min(rest.unwrap_or(NEVER).saturating_add(cost));
+            found.passes.load(length.min(*problem.window.end()));
+            // All classes of a piece have to meet.
+            let of_piece = starts.iter().filter(|start| found.explored.piece(start.node) == piece);
+            let rest = of_piece.map(|start| found.passes.rest(problem, length, start.node, start.count, None));
+            found.least = found.least.min(rest.max().unwrap_or(NEVER).saturating_add(cost));
         }
-        let nodes = FxHashMap::default();
-        Some(Self { goal, explored, passes, has_prices: false, limit, least, names, nodes, missing: 0 })
+        Some(found)
     }
 
     fn explore(
@@ -184,48 +177,42 @@ impl Classes {
         scope: &Scope,
         limit: usize,
         names: &mut Names,
-        seeds: Vec<(usize, ClassKey)>,
-    ) -> Option<(Explored<ClassKey>, Passes)> {
-        let mut starts = seeds;
+        seeds: Vec<(usize, u32)>,
+    ) -> Option<(Explored<u32>, Passes)> {
+        let mut begins = seeds;
         for &(piece, _) in &scope.starts {
             let run = &problem.descriptors[piece];
             if run.closed() + u32::from(run.open() > 0) <= 1 {
-                starts.extend(names.keys(goal, run).into_iter().map(|key| (piece, key)));
+                begins.extend(names.classes(run).into_iter().map(|class| (piece, class)));
             }
         }
-        let expand = |piece: usize, &(class, euler): &ClassKey, joins: &mut Joins<ClassKey>| {
+        let expand = |piece: usize, &class: &u32, joins: &mut Joins<u32>| {
             for step in problem.steps[piece].iter().filter(|s| scope.allowed[s.to]) {
-                let Some((classes, more)) = names.join(problem, class, step.to) else { continue };
-                let euler = if goal.holes.is_some() { euler + more } else { 0 };
-                // Holes are what components have more than χ, and never become fewer.
-                let least_holes = |&class: &u32| {
-                    let run = &names.partitions[class as usize];
-                    i64::from(run.closed() + run.open()) - i64::from(euler)
-                };
-                let holes = classes.iter().map(least_holes).max().unwrap_or(0);
-                if goal.holes.is_none_or(|wanted| holes <= i64::from(wanted.most())) {
-                    joins.push((*step, classes.iter().map(|&class| (class, euler)).collect()));
+                if let Some((classes, more)) = names.join(problem, class, step.to) {
+                    joins.push((*step, more, classes));
                 }
             }
-            let run = &names.partitions[class as usize];
-            scope.stop[piece].filter(|_| may_stop(goal, problem.shape, run, euler))
+            let count = may_stop(goal, problem.shape, &names.partitions[class as usize])?;
+            scope.stop[piece].map(|cost| Toll { cost, rise: 0, count })
         };
-        let mut explored = Explored::new(problem, starts, limit, expand)?;
-        let passes = Passes::new(problem, std::mem::take(&mut explored.graph))?;
+        let mut explored = Explored::new(problem, begins, limit, expand)?;
+        let mut passes = Passes::new(problem, std::mem::take(&mut explored.graph))?;
+        if let Some(wanted) = goal.holes {
+            let euler = 1 - i64::from(wanted.most())..=1 - i64::from(wanted.least());
+            passes.learn_counts(problem, &starts(problem, scope, names, &explored), euler);
+        }
         Some((explored, passes))
     }
 
     /// Makes the estimate know the drift, by prices.
-    pub(super) fn learn_prices(&mut self, problem: &Problem<'_>, scope: &Scope) {
-        let Self { goal, explored, passes, names, .. } = self;
-        let mut starts = Vec::new();
-        for &(piece, cost) in &scope.starts {
-            let keys = names.keys(*goal, &problem.descriptors[piece]);
-            let nodes = keys.into_iter().filter_map(|key| explored.node(piece, key));
-            starts.extend(nodes.map(|node| (node, problem.widths[piece], cost)));
-        }
-        passes.learn_prices(problem, &starts);
+    pub(super) fn learn_drift(&mut self, problem: &Problem<'_>, scope: &Scope) {
+        let starts = self.starts(problem, scope);
+        self.passes.learn_drift(problem, &starts);
         self.has_prices = true;
+    }
+
+    fn starts(&mut self, problem: &Problem<'_>, scope: &Scope) -> Vec<Start> {
+        starts(problem, scope, &mut self.names, &self.explored)
     }
 
     /// The estimate for a run of a length that is loaded, as [`super::estimates::Estimates::rest`].
@@ -235,16 +222,23 @@ impl Classes {
         automaton: &Automaton<'_>,
         (length, piece, state, drift): (u32, usize, StateId, Option<i32>),
     ) -> Cost {
-        let Self { goal, explored, passes, names, nodes, missing, .. } = self;
-        let (nodes, _) = nodes.entry((piece as u32, state)).or_insert_with(|| {
-            let keys = keys_of(*goal, automaton, names, state);
+        let Self { explored, passes, names, nodes, missing, .. } = self;
+        let nodes = nodes.entry((piece as u32, state)).or_insert_with(|| {
+            let Some(run) = automaton.connections(state) else {
+                return Nodes { found: Vec::new(), unknown: 0, euler: 0 };
+            };
+            let classes = names.classes(&run);
             let found: Vec<u32> =
-                keys.iter().filter_map(|&key| explored.node(piece, key).map(|n| n as u32)).collect();
-            let unknown = keys.len() - found.len();
+                classes.iter().filter_map(|&class| explored.node(piece, class).map(|n| n as u32)).collect();
+            let unknown = classes.len() - found.len();
             *missing += unknown;
-            (found, unknown)
+            // Components − χ are the holes so far.
+            let (_, holes) = automaton.closed(state);
+            let euler = i64::from(run.closed() + run.open()) - i64::from(holes);
+            Nodes { found, unknown, euler }
         });
-        nodes.iter().map(|&node| passes.rest(problem, length, node as usize, drift)).max().unwrap_or(0)
+        let rest = |&node: &u32| passes.rest(problem, length, node as usize, nodes.euler, drift);
+        nodes.found.iter().map(rest).max().unwrap_or(0)
     }
 
     /// Takes the classes of the states that were met since into the graph; whether there were enough of them to be worth
@@ -254,12 +248,13 @@ impl Classes {
             return false;
         }
         let mut unknown: Vec<(u32, StateId)> =
-            self.nodes.iter().filter(|(_, (_, unknown))| *unknown > 0).map(|(&key, _)| key).collect();
+            self.nodes.iter().filter(|(_, nodes)| nodes.unknown > 0).map(|(&key, _)| key).collect();
         unknown.sort_unstable();
         let mut seeds = Vec::new();
         for (piece, state) in unknown {
-            let keys = keys_of(self.goal, automaton, &mut self.names, state);
-            seeds.extend(keys.into_iter().map(|key| (piece as usize, key)));
+            let run = automaton.connections(state);
+            let classes = run.map(|run| self.names.classes(&run)).unwrap_or_default();
+            seeds.extend(classes.into_iter().map(|class| (piece as usize, class)));
         }
         self.missing = 0;
         let Self { goal, limit, names, .. } = self;
@@ -269,36 +264,32 @@ impl Classes {
         (self.explored, self.passes) = (explored, passes);
         self.nodes.clear();
         if self.has_prices {
-            self.learn_prices(problem, scope);
+            self.learn_drift(problem, scope);
         }
         true
     }
 }
 
-/// The classes of a state, each with the Euler characteristic if it is read.
-fn keys_of(goal: Goal, automaton: &Automaton<'_>, names: &mut Names, state: StateId) -> Vec<ClassKey> {
-    let Some(run) = automaton.connections(state) else { return Vec::new() };
-    // Components − χ are the holes so far.
-    let (_, holes) = automaton.closed(state);
-    let euler = match goal.holes {
-        Some(_) => (run.closed() + run.open()) as i32 - holes as i32,
-        None => 0,
-    };
-    names.classes(&run).into_iter().map(|class| (class, euler)).collect()
+/// Where runs begin: each class of a first piece.
+fn starts(problem: &Problem<'_>, scope: &Scope, names: &mut Names, explored: &Explored<u32>) -> Vec<Start> {
+    let mut starts = Vec::new();
+    for &(piece, cost) in &scope.starts {
+        let run = &problem.descriptors[piece];
+        let (length, count) = (problem.widths[piece], run.euler());
+        let nodes = names.classes(run).into_iter().filter_map(|class| explored.node(piece, class));
+        starts.extend(nodes.map(|node| Start { node, length, cost, count }));
+    }
+    starts
 }
 
-/// Whether a run may be complete, as far as a partition with fewer classes can tell.
-fn may_stop(goal: Goal, shape: Shape, run: &Descriptor, euler: i32) -> bool {
-    let (topology, euler) = match shape {
-        Shape::Open => match run.right().is_empty() {
-            true => (None, euler),
-            false => return false,
-        },
-        Shape::Ring => match run.close() {
-            Ok(topology) => (Some(topology), euler - run.left().len() as i32),
-            Err(_) => return false,
-        },
-    };
-    topology.is_none_or(|ring| ring.components <= 1 && (ring.closed_pattern || !goal.closed_pattern))
-        && goal.holes.is_none_or(|holes| u32::try_from(1 - euler).is_ok_and(|n| holes.contains(n)))
+/// Whether a run may be complete, as far as a partition with fewer classes can tell, and then what χ becomes more.
+fn may_stop(goal: Goal, shape: Shape, run: &Descriptor) -> Option<i32> {
+    match shape {
+        Shape::Open => run.right().is_empty().then_some(0),
+        Shape::Ring => {
+            let ring = run.close().ok()?;
+            let is_one = ring.components <= 1 && (ring.closed_pattern || !goal.closed_pattern);
+            is_one.then_some(-(run.left().len() as i32))
+        }
+    }
 }

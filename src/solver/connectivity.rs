@@ -42,6 +42,8 @@ pub(super) struct Connectivity {
     endings: Vec<Option<Counts>>,
     starts: Vec<(u32, Counts)>,
     nodes: FxHashMap<(u32, u32), u32>,
+    /// Numbers of the ways of being connected.
+    known: FxHashMap<Descriptor, u32>,
 }
 
 /// Nodes at which the graph is given up.
@@ -58,6 +60,7 @@ impl Connectivity {
             endings: Vec::new(),
             starts: Vec::new(),
             nodes: FxHashMap::default(),
+            known: FxHashMap::default(),
         };
         let mut known: FxHashMap<Descriptor, u32> = FxHashMap::default();
         let mut states: Vec<Descriptor> = Vec::new();
@@ -94,6 +97,7 @@ impl Connectivity {
             }
         }
         graph.first_edge.push(graph.edges.len() as u32);
+        graph.known = known;
         Some(graph)
     }
 
@@ -103,6 +107,12 @@ impl Connectivity {
             queue.push((piece, state));
             self.pieces.len() as u32 - 1
         })
+    }
+
+    /// The node of the runs that end with `piece` and are connected like this, if there are any.
+    pub(super) fn node(&self, piece: usize, connections: &Descriptor) -> Option<u32> {
+        let state = self.known.get(connections)?;
+        self.nodes.get(&(piece as u32, *state)).copied()
     }
 
     /// The number of nodes.

@@ -6,6 +6,7 @@
 //!
 //! - *exact*: all pairs of piece and state, where they are few. Nothing but the drift is ignored.
 //! - *classes*: for one component, one class of a run's portals against all the others ([`super::classes`]).
+//! - *connected*: for other counts, all pairs of piece and connections of portals ([`super::connected`]).
 //!
 //! Where runs leave the band each of these knows the drift by a price ([`super::priced`]). Where that is not enough, the
 //! pairs of piece and state are taken with the drift, or the pieces alone where the run is long.
@@ -13,8 +14,10 @@
 use std::sync::Arc;
 
 use super::classes::Classes;
-use super::graph::{Explored, Scope, of_pieces};
+use super::connected::Connected;
+use super::graph::{Explored, Scope, Toll, of_pieces};
 use super::lengths::has_level_run;
+use super::price::Start;
 use super::priced::{Passes, estimate};
 use super::problem::{Cost, Problem};
 use super::table::{NEVER, Table};
@@ -49,6 +52,7 @@ type Drifting<K> = (Explored<K>, Table<Cost>);
 pub(super) struct Estimates {
     exact: Option<(Explored<(StateId, i32)>, Passes)>,
     classes: Option<Classes>,
+    connected: Option<Connected>,
     /// Whether no run stays in the band.
     is_never: bool,
     /// The same with the drift.
@@ -81,6 +85,11 @@ impl Estimates {
             (true, _) => None,
             (false, coarser) => Classes::new(problem, automaton.goal(), scope, limit, coarser),
         };
+        self.connected = match (self.exact.is_none() && self.classes.is_none(), self.connected.take()) {
+            (true, None) => Connected::new(problem, automaton.goal(), scope),
+            (true, known) => known,
+            (false, _) => None,
+        };
     }
 
     /// Makes what is known know the drift, by prices.
@@ -90,25 +99,28 @@ impl Estimates {
         automaton: &mut Automaton<'_>,
         scope: &Scope,
     ) {
-        let begin = |piece: usize, node: usize, cost: Cost| (node, problem.widths[piece], cost);
+        let begin =
+            |piece: usize, node: usize, cost: Cost| Start { node, length: problem.widths[piece], cost, count: 0 };
         if let Some((explored, passes)) = &mut self.exact {
             let starts = scope.starts.iter().filter_map(|&(piece, cost)| {
                 let node = explored.node(piece, (automaton.start(piece)?, 0))?;
                 Some(begin(piece, node, cost))
             });
             let starts: Vec<_> = starts.collect();
-            passes.learn_prices(problem, &starts);
+            passes.learn_drift(problem, &starts);
             if passes.only_leaves() {
-                let starts = starts.iter().map(|&(node, length, _)| (node, length));
+                let starts = starts.iter().map(|start| (start.node, start.length));
                 self.is_never = has_level_run(problem, passes.graph(), starts) == Some(false);
             }
         } else if let Some(classes) = &mut self.classes {
-            classes.learn_prices(problem, scope);
+            classes.learn_drift(problem, scope);
+        } else if let Some(connected) = &mut self.connected {
+            connected.learn_drift(problem, scope);
         } else {
             let starts = scope.starts.iter().map(|&(piece, cost)| begin(piece, piece, cost));
             self.pieces = Passes::new(problem, of_pieces(problem, scope));
             if let Some(passes) = &mut self.pieces {
-                passes.learn_prices(problem, &starts.collect::<Vec<_>>());
+                passes.learn_drift(problem, &starts.collect::<Vec<_>>());
             }
         }
     }
@@ -141,7 +153,8 @@ impl Estimates {
 
     /// Makes the rows of `length` and of what a step leads to available.
     pub(super) fn load(&mut self, length: u32) {
-        let Self { exact, classes, pieces, drifting, drifts, .. } = self;
+        let Self { exact, classes, connected, pieces, drifting, drifts, .. } = self;
+        connected.iter_mut().for_each(|connected| connected.load(length));
         let tables = [drifting.as_mut().map(|(_, table)| table), drifts.as_mut().map(|(_, table)| table)];
         tables.into_iter().flatten().for_each(|table| table.load(length));
         let passes = [
@@ -166,12 +179,12 @@ impl Estimates {
         }
         let mut rest = 0;
         if let Some(passes) = &self.pieces {
-            rest = passes.rest(problem, length, piece, drift);
+            rest = passes.rest(problem, length, piece, 0, drift);
         }
         if let Some((explored, passes)) = &self.exact {
             // What was not reached is from another scope, of which nothing is known here.
             let node = explored.node(piece, (state, 0));
-            rest = rest.max(node.map_or(0, |node| passes.rest(problem, length, node, drift)));
+            rest = rest.max(node.map_or(0, |node| passes.rest(problem, length, node, 0, drift)));
         }
         if let (Some((explored, table)), Some(drift)) = (&self.drifting, drift) {
             let node = explored.node(piece, (state, drift));
@@ -182,6 +195,9 @@ impl Estimates {
         }
         if let Some(classes) = &mut self.classes {
             rest = rest.max(classes.rest(problem, automaton, run));
+        }
+        if let Some(connected) = &mut self.connected {
+            rest = rest.max(connected.rest(problem, automaton, run));
         }
         rest
     }
@@ -216,10 +232,10 @@ pub(super) fn triples(
                 continue;
             }
             if let Some(next) = automaton.step(state, step.to) {
-                joins.push((*step, vec![(next, drift)]));
+                joins.push((*step, 0, vec![(next, drift)]));
             }
         }
-        scope.stop[piece].filter(|_| automaton.accepts(state))
+        scope.stop[piece].filter(|_| automaton.accepts(state)).map(Toll::from)
     })
 }
 
@@ -230,16 +246,16 @@ fn with_drift(problem: &Problem<'_>, scope: &Scope, limit: usize) -> Option<Expl
         for step in problem.steps[piece].iter().filter(|s| scope.allowed[s.to]) {
             let drift = drift.saturating_add(step.rise);
             if drift.saturating_abs() <= problem.drift_limit {
-                joins.push((*step, vec![drift]));
+                joins.push((*step, 0, vec![drift]));
             }
         }
-        scope.stop[piece]
+        scope.stop[piece].map(Toll::from)
     })
 }
 
 /// The pass over what was explored.
 fn drifting<K>(problem: &Problem<'_>, mut explored: Explored<K>) -> Option<Drifting<K>> {
     let graph = Arc::new(std::mem::take(&mut explored.graph));
-    let table = estimate(problem, &graph, problem.share(DRIFT_WORK_LIMIT), |cost, _| cost)?;
+    let table = estimate(problem, &graph, problem.share(DRIFT_WORK_LIMIT), |toll| toll.cost)?;
     Some((explored, table))
 }

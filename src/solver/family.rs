@@ -211,7 +211,7 @@ fn piece_table(problem: &Problem<'_>, scope: &Scope) -> Table<Cost> {
         of_pieces(problem, scope).into(),
         problem.window.clone(),
         problem.share(TABLE_BUDGET / 2),
-        |c, _| c,
+        |toll| toll.cost,
     );
     table.load(0);
     table

@@ -19,15 +19,38 @@ pub(super) struct Edge {
     pub(super) width: u32,
     /// By how much it raises the run, in units of drift.
     pub(super) rise: i32,
+    /// By how much it raises what is counted, if anything is.
+    pub(super) count: i32,
     /// Whether this edge and the next are one join to two nodes at once, both of which must be completed.
     pub(super) and_next: bool,
 }
 
 impl Edge {
     /// A step to a node.
-    fn new(problem: &Problem<'_>, step: &Step, to: u32) -> Self {
+    pub(super) fn new(problem: &Problem<'_>, step: &Step, to: u32) -> Self {
         let &Step { to: piece, cost, rise } = step;
-        Self { cost, to, width: problem.widths[piece], rise, and_next: false }
+        Self { cost, to, width: problem.widths[piece], rise, count: 0, and_next: false }
+    }
+
+    /// What it adds to a run.
+    pub(super) fn toll(&self) -> Toll {
+        Toll { cost: self.cost, rise: self.rise, count: self.count }
+    }
+}
+
+/// What a join, or stopping, adds to a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Toll {
+    pub(super) cost: Cost,
+    /// In units of drift.
+    pub(super) rise: i32,
+    /// Of what is counted.
+    pub(super) count: i32,
+}
+
+impl From<Cost> for Toll {
+    fn from(cost: Cost) -> Self {
+        Self { cost, rise: 0, count: 0 }
     }
 }
 
@@ -48,7 +71,7 @@ pub(super) struct Graph {
     edges: Vec<Edge>,
     /// Where the edges of each node begin, and where all end.
     first_edge: Vec<u32>,
-    stops: Vec<Option<Cost>>,
+    stops: Vec<Option<Toll>>,
 }
 
 impl Graph {
@@ -57,8 +80,8 @@ impl Graph {
         Self { edges: Vec::new(), first_edge: vec![0], stops: Vec::new() }
     }
 
-    /// Adds a node whose edges are the ones added since the last.
-    pub(super) fn finish_node(&mut self, stop: Option<Cost>) {
+    /// Adds a node whose edges are the ones added since the last, and what stopping there adds if it is possible.
+    pub(super) fn finish_node(&mut self, stop: Option<Toll>) {
         self.stops.push(stop);
         self.first_edge.push(self.edges.len() as u32);
     }
@@ -83,8 +106,8 @@ impl Graph {
         self.first_edge[node] as usize..self.first_edge[node + 1] as usize
     }
 
-    /// What stopping at a node costs, if it may be stopped at.
-    pub(super) fn stop(&self, node: usize) -> Option<Cost> {
+    /// What stopping at a node adds, if it may be stopped at.
+    pub(super) fn stop(&self, node: usize) -> Option<Toll> {
         self.stops[node]
     }
 
@@ -107,7 +130,7 @@ pub(super) fn of_pieces(problem: &Problem<'_>, scope: &Scope) -> Graph {
         for step in problem.steps[piece].iter().filter(|s| is_allowed && scope.allowed[s.to]) {
             graph.add(Edge::new(problem, step, step.to as u32));
         }
-        graph.finish_node(scope.stop[piece].filter(|_| is_allowed));
+        graph.finish_node(scope.stop[piece].filter(|_| is_allowed).map(Toll::from));
     }
     graph
 }
@@ -120,17 +143,17 @@ pub(super) struct Explored<K> {
     keys: Vec<(u32, K)>,
 }
 
-/// What can follow at a node: the joins, each with the keys of the nodes that it leads to.
-pub(super) type Joins<K> = Vec<(Step, Vec<K>)>;
+/// What can follow at a node: the joins, each with what it counts and the keys of the nodes that it leads to.
+pub(super) type Joins<K> = Vec<(Step, i32, Vec<K>)>;
 
 impl<K: Hash + Eq + Clone> Explored<K> {
     /// Everything that can be reached from `starts`; `None` when that is more than `limit` nodes. `expand` gives
-    /// for a piece and a key what stopping there costs, and the joins.
+    /// for a piece and a key what stopping there adds, and the joins.
     pub(super) fn new(
         problem: &Problem<'_>,
         starts: impl IntoIterator<Item = (usize, K)>,
         limit: usize,
-        mut expand: impl FnMut(usize, &K, &mut Joins<K>) -> Option<Cost>,
+        mut expand: impl FnMut(usize, &K, &mut Joins<K>) -> Option<Toll>,
     ) -> Option<Self> {
         let mut found = Self { graph: Graph::new(), nodes: FxHashMap::default(), keys: Vec::new() };
         for (piece, key) in starts {
@@ -145,11 +168,12 @@ impl<K: Hash + Eq + Clone> Explored<K> {
             let (piece, key) = found.keys[at].clone();
             joins.clear();
             let stop = expand(piece as usize, &key, &mut joins);
-            for (step, keys) in joins.drain(..) {
+            for (step, count, keys) in joins.drain(..) {
                 let last = keys.len().saturating_sub(1);
                 for (i, key) in keys.into_iter().enumerate() {
                     let node = found.meet(step.to, key);
-                    found.graph.add(Edge { and_next: i < last, ..Edge::new(problem, &step, node) });
+                    let and_next = i < last;
+                    found.graph.add(Edge { count, and_next, ..Edge::new(problem, &step, node) });
                 }
             }
             found.graph.finish_node(stop);

@@ -12,7 +12,7 @@
 use std::ops::{Range, RangeInclusive};
 use std::sync::Arc;
 
-use super::graph::{Edge, Graph};
+use super::graph::{Edge, Graph, Toll};
 use super::problem::Cost;
 use super::recurrence::Recurrence;
 
@@ -71,6 +71,31 @@ impl Weigh for Cost {
     }
 }
 
+/// The least priced cost, which may be negative.
+impl Weigh for i64 {
+    const NONE: Self = i64::MAX;
+
+    fn or(self, other: Self) -> Self {
+        self.min(other)
+    }
+
+    fn after(self, step: Self) -> Self {
+        if self == Self::NONE { self } else { self.saturating_add(step) }
+    }
+
+    fn and(self, other: Self) -> Self {
+        self.max(other)
+    }
+
+    fn as_cost(self) -> Option<i64> {
+        (self != Self::NONE).then_some(self)
+    }
+
+    fn shifted(self, more: i64) -> Self {
+        self.after(more)
+    }
+}
+
 /// The results of a pass.
 pub(super) struct Table<W> {
     graph: Arc<Graph>,
@@ -108,13 +133,13 @@ struct Tail<W> {
 }
 
 impl<W: Weigh> Table<W> {
-    /// The pass over `graph` for runs whose length is in `window`. The costs and rises of joins are turned into
-    /// weights by `weigh`, those of stopping with a rise of 0. Beyond `budget` bytes not all rows are kept.
+    /// The pass over `graph` for runs whose length is in `window`. What joins and stopping add is
+    /// turned into weights by `weigh`. Beyond `budget` bytes not all rows are kept.
     pub(super) fn new(
         graph: Arc<Graph>,
         window: RangeInclusive<u32>,
         budget: usize,
-        weigh: impl Fn(Cost, i32) -> W,
+        weigh: impl Fn(Toll) -> W,
     ) -> Self {
         Self::within(graph, window, budget, usize::MAX, weigh).expect("patience does not end")
     }
@@ -126,18 +151,18 @@ impl<W: Weigh> Table<W> {
         window: RangeInclusive<u32>,
         budget: usize,
         patience: usize,
-        weigh: impl Fn(Cost, i32) -> W,
+        weigh: impl Fn(Toll) -> W,
     ) -> Option<Self> {
         let layers = *window.end() as usize + 1;
         let widest = graph.widest();
         let n = graph.len();
         let affordable = (budget / (n.max(1) * size_of::<W>())).saturating_sub(widest);
         let block = affordable.max((layers * widest).isqrt()).max(widest).min(layers.max(widest));
-        let weights = graph.all_edges().iter().map(|e| weigh(e.cost, e.rise)).collect();
+        let weights = graph.all_edges().iter().map(|e| weigh(e.toll())).collect();
         let back = |e: &Edge| e.width * n as u32 - e.to;
         let back = graph.all_edges().iter().map(back).collect();
         let has_pairs = graph.all_edges().iter().any(|e| e.and_next);
-        let stops = (0..n).map(|node| graph.stop(node).map_or(W::NONE, |cost| weigh(cost, 0))).collect();
+        let stops = (0..n).map(|node| graph.stop(node).map_or(W::NONE, &weigh)).collect();
         let most_rows = (patience / graph.work(1).max(1)).max(1);
         let rows = vec![W::NONE; widest * n];
         let mut table = Self {
@@ -338,9 +363,9 @@ mod tests {
         let mut graph = Graph::new();
         for (node, edges) in edges.iter().enumerate() {
             for &(to, width, cost) in edges {
-                graph.add(Edge { cost, to: to % 4, width, rise: 0, and_next: false });
+                graph.add(Edge { cost, to: to % 4, width, rise: 0, count: 0, and_next: false });
             }
-            graph.finish_node((node == 2).then_some(3));
+            graph.finish_node((node == 2).then_some(Toll::from(3)));
         }
         graph
     }
@@ -372,8 +397,8 @@ mod tests {
         ) {
             let window = end.saturating_sub(slack)..=end;
             let defined = defined(&edges, &window);
-            let mut whole = Table::new(graph(&edges).into(), window.clone(), usize::MAX, |c, _| c);
-            let mut strips = Table::new(graph(&edges).into(), window, 0, |c, _| c);
+            let mut whole = Table::new(graph(&edges).into(), window.clone(), usize::MAX, |toll| toll.cost);
+            let mut strips = Table::new(graph(&edges).into(), window, 0, |toll| toll.cost);
             for (length, node) in questions {
                 whole.load(length);
                 strips.load(length);
@@ -393,7 +418,7 @@ mod tests {
         ) {
             let window = end - slack..=end;
             let defined = defined(&edges, &window);
-            let table = Table::within(graph(&edges).into(), window, usize::MAX, patience, |c, _| c);
+            let table = Table::within(graph(&edges).into(), window, usize::MAX, patience, |toll| toll.cost);
             if let Some(mut table) = table {
                 for (length, row) in (0u32..).zip(&defined) {
                     table.load(length);
@@ -409,7 +434,7 @@ mod tests {
     #[test]
     fn rows_that_recur_are_not_kept() {
         let edges = [vec![(1, 1, 2)], vec![(2, 2, 5)], vec![(0, 1, 0), (0, 3, 9)], vec![]];
-        let mut table = Table::new(graph(&edges).into(), 1_000_000..=1_000_000, usize::MAX, |c: Cost, _| c);
+        let mut table = Table::new(graph(&edges).into(), 1_000_000..=1_000_000, usize::MAX, |toll: Toll| toll.cost);
         assert!(table.bytes() < 10_000, "{}", table.bytes());
         table.load(0);
         // 250,000 rounds of four bins: 0 to 1 to 2 to 0, and the last ends at 2.
