@@ -8,7 +8,9 @@ use std::collections::BTreeSet;
 use openwork::pieces::{Catalogue, CostWeights};
 use openwork::planar::{FillRule, Grid, GridPoint, Region, Tolerances};
 use openwork::reeb::{ReebGraph, Slicing, SlicingRule};
-use openwork::solver::{Census, Problem, Random, Refusal, Step, Unsolved, best, canonical, explain, solve};
+use openwork::solver::{
+    Census, Nearest, Problem, Random, Refusal, Step, Unsolved, best, canonical, explain, solve,
+};
 use openwork::topology::{Descriptor, Goal, Shape, Topology, Wanted};
 use proptest::prelude::*;
 
@@ -203,12 +205,13 @@ fn check_refusal(
     let in_window: Vec<&Made> = all.iter().filter(|m| problem.window.contains(&m.length)).collect();
     let in_band: Vec<&Made> = in_window.iter().filter(|m| m.is_in_band).copied().collect();
     let with = |goal: Goal| in_band.iter().filter(move |m| goal.admits(m.topology));
-    let is_nearest = |found: Option<u32>, wanted: Option<Wanted>, counts: BTreeSet<u32>| {
+    let is_nearest = |found: Option<Nearest>, wanted: Option<Wanted>, counts: BTreeSet<u32>| {
         let wanted = wanted.expect("a count that is refused was asked for");
         prop_assert!(!counts.iter().any(|&n| wanted.contains(n)), "{} can be had", wanted);
         let least = counts.iter().map(|&n| wanted.distance(n)).min();
-        let is_true = found.is_none_or(|f| counts.contains(&f));
-        prop_assert!(is_true && found.map(|f| wanted.distance(f)) == least, "{:?} of {:?}", found, counts);
+        let is_true = found.is_none_or(|f| counts.contains(&f.count) && f.is_proven);
+        let distance = found.map(|f| wanted.distance(f.count));
+        prop_assert!(is_true && distance == least, "{:?} of {:?}", found, counts);
         Ok(())
     };
     match refusal {
@@ -234,7 +237,8 @@ fn check_refusal(
             let counts = with(others).map(|m| m.topology.holes).collect();
             is_nearest(nearest, goal.holes, counts)?;
         }
-        Refusal::Both { nearest_holes } => {
+        Refusal::Both { each_exists, nearest_holes } => {
+            prop_assert!(each_exists);
             let without = Goal { components: None, ..goal };
             prop_assert!(with(without).next().is_some());
             let counts: BTreeSet<u32> =

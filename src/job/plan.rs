@@ -102,6 +102,8 @@ pub fn plan(catalogue: &Catalogue, options: &PlanOptions) -> Result<Plan, PlanEr
     let middle = (options.length_mm / bin_mm).round().max(1.0) as u32;
     problem.window = widest.unwrap_or(middle..=middle);
     let longest = (problem.window.end() * 2).max((catalogue.width_mm() * 2.0 / bin_mm) as u32);
+    // What is too long to be used here is as long as it is when other lengths are asked for.
+    problem.widths = catalogue.pieces().iter().map(|piece| bins(piece, bin_mm)).collect();
     Err(PlanError::Refused { refusal: solver::explain(&problem, options.goal, longest), bin_mm })
 }
 

@@ -1,7 +1,7 @@
 //! Refusals in words: which constraint cannot be met, why, and what can be had.
 
 use crate::pieces::Catalogue;
-use crate::solver::Refusal;
+use crate::solver::{Nearest, Refusal};
 use crate::topology::{Goal, Shape, Wanted};
 
 use super::plan::{EPSILONS, PlanOptions};
@@ -37,8 +37,14 @@ pub(super) fn message(
             hole_witness(catalogue, options),
             nearest_hint("--holes", nearest)
         ),
-        Refusal::Both { nearest_holes } => format!(
+        Refusal::Both { each_exists: true, nearest_holes } => format!(
             "{} component(s) can be had {along}, and {} hole(s) can, but not both in one sequence; {}",
+            shown(components),
+            shown(holes),
+            nearest_hint("--holes", nearest_holes)
+        ),
+        Refusal::Both { each_exists: false, nearest_holes } => format!(
+            "no sequence {along} has {} component(s) and {} hole(s) together; {}",
             shown(components),
             shown(holes),
             nearest_hint("--holes", nearest_holes)
@@ -46,9 +52,12 @@ pub(super) fn message(
     }
 }
 
-fn nearest_hint(option: &str, nearest: Option<u32>) -> String {
+fn nearest_hint(option: &str, nearest: Option<Nearest>) -> String {
     match nearest {
-        Some(n) => format!("the nearest that can be had is {option} {n}"),
+        Some(Nearest { count, is_proven: true }) => {
+            format!("the nearest that can be had is {option} {count}")
+        }
+        Some(Nearest { count, is_proven: false }) => format!("{option} {count} can be had"),
         None => format!("leave out {option} to see what can be had"),
     }
 }

@@ -97,7 +97,8 @@ impl<'p> Census<'p> {
         let graph = std::mem::take(&mut explored.graph);
         *patience = patience.checked_sub(graph.work(*problem.window.end()))?;
         let weigh = |cost| Big::of_cost(cost, *temperature);
-        let table = Table::new(graph.into(), problem.window.clone(), 2 * TABLE_BUDGET, |toll| weigh(toll.cost));
+        let table =
+            Table::new(graph.into(), problem.window.clone(), 2 * TABLE_BUDGET, |toll| weigh(toll.cost));
         let starts = starts.into_iter().filter_map(|(piece, cost, state)| {
             explored.node(piece, (state, 0)).map(|node| (node, weigh(cost)))
         });

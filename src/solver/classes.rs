@@ -165,7 +165,8 @@ impl Classes {
             found.passes.load(length.min(*problem.window.end()));
             // All classes of a piece have to meet.
             let of_piece = starts.iter().filter(|start| found.explored.piece(start.node) == piece);
-            let rest = of_piece.map(|start| found.passes.rest(problem, length, start.node, start.count, None));
+            let rest =
+                of_piece.map(|start| found.passes.rest(problem, length, start.node, start.count, None));
             found.least = found.least.min(rest.max().unwrap_or(NEVER).saturating_add(cost));
         }
         Some(found)

@@ -99,8 +99,12 @@ impl Estimates {
         automaton: &mut Automaton<'_>,
         scope: &Scope,
     ) {
-        let begin =
-            |piece: usize, node: usize, cost: Cost| Start { node, length: problem.widths[piece], cost, count: 0 };
+        let begin = |piece: usize, node: usize, cost: Cost| Start {
+            node,
+            length: problem.widths[piece],
+            cost,
+            count: 0,
+        };
         if let Some((explored, passes)) = &mut self.exact {
             let starts = scope.starts.iter().filter_map(|&(piece, cost)| {
                 let node = explored.node(piece, (automaton.start(piece)?, 0))?;

@@ -26,27 +26,36 @@ pub enum Refusal {
     ClosedPattern,
     /// No sequence has so many holes.
     Holes {
-        /// The nearest number that can be had, if it was found.
-        nearest: Option<u32>,
+        /// The nearest number that can be had, if one was found.
+        nearest: Option<Nearest>,
     },
     /// No sequence has so many components.
     Components {
-        /// The nearest number that can be had, if it was found.
-        nearest: Option<u32>,
+        /// The nearest number that can be had, if one was found.
+        nearest: Option<Nearest>,
     },
-    /// Each count can be had by itself, but not both together.
+    /// Components and holes cannot be had together.
     Both {
+        /// Whether each was found to be possible by itself.
+        each_exists: bool,
         /// The number of holes nearest to the request among sequences with the wanted components.
-        nearest_holes: Option<u32>,
+        nearest_holes: Option<Nearest>,
     },
+}
+
+/// A count that can be had instead of the one that was wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Nearest {
+    /// The count.
+    pub count: u32,
+    /// Whether every count nearer to the request was found to be impossible.
+    pub is_proven: bool,
 }
 
 /// The constraint that cannot be met, for a problem that [`solve`] found infeasible. `longest` bins are looked
 /// at for sequences of other lengths.
 pub fn explain(problem: &Problem<'_>, goal: Goal, longest: u32) -> Refusal {
-    // What is not refused soon is taken to be possible: another constraint is the one to name.
     let problem = &Problem { variety: None, memory_limit: ATTEMPT_BYTES, ..problem.clone() };
-    let feasible = |goal: Goal| !matches!(solve(problem, goal), Err(Unsolved::Infeasible));
     let free = Goal::default();
     let lengths = lengths(problem, longest.max(*problem.window.end()));
     if lengths.range(problem.window.clone()).next().is_none() {
@@ -55,26 +64,39 @@ pub fn explain(problem: &Problem<'_>, goal: Goal, longest: u32) -> Refusal {
             above: lengths.range(problem.window.end() + 1..).next().copied(),
         };
     }
-    if !stays_in_band(problem).unwrap_or_else(|| feasible(free)) {
+    let is_refused = |goal: Goal| solve(problem, goal) == Err(Unsolved::Infeasible);
+    if stays_in_band(problem).map_or_else(|| is_refused(free), |stays| !stays) {
         return Refusal::Drift;
     }
-    if goal.closed_pattern && !feasible(Goal { closed_pattern: true, ..free }) {
+    // A constraint that is the only one left is the one to name; what is not refused soon is left open.
+    let has_counts = goal.components.is_some() || goal.holes.is_some();
+    if goal.closed_pattern && (!has_counts || is_refused(Goal { closed_pattern: true, ..free })) {
         return Refusal::ClosedPattern;
     }
     let components = Goal { holes: None, ..goal };
     let holes = Goal { components: None, ..goal };
-    if let Some(wanted) = goal.components.filter(|_| !feasible(components)) {
-        let others = Goal { components: None, ..components };
-        return Refusal::Components { nearest: nearest(problem, others, wanted, Count::Components) };
-    }
-    let others = Goal { holes: None, ..holes };
-    match goal.holes {
-        Some(wanted) if !feasible(holes) => {
-            Refusal::Holes { nearest: nearest(problem, others, wanted, Count::Holes) }
+    let others = Goal { components: None, holes: None, ..goal };
+    match (goal.components, goal.holes) {
+        (Some(wanted), None) => {
+            Refusal::Components { nearest: nearest(problem, others, wanted, Count::Components) }
         }
-        wanted => Refusal::Both {
-            nearest_holes: wanted.and_then(|wanted| nearest(problem, components, wanted, Count::Holes)),
-        },
+        (None, Some(wanted)) => Refusal::Holes { nearest: nearest(problem, others, wanted, Count::Holes) },
+        (None, None) => Refusal::Drift,
+        (Some(of_components), Some(of_holes)) => {
+            let [by_components, by_holes] = [components, holes].map(|goal| solve(problem, goal));
+            if by_components == Err(Unsolved::Infeasible) {
+                return Refusal::Components {
+                    nearest: nearest(problem, others, of_components, Count::Components),
+                };
+            }
+            if by_holes == Err(Unsolved::Infeasible) {
+                return Refusal::Holes { nearest: nearest(problem, others, of_holes, Count::Holes) };
+            }
+            Refusal::Both {
+                each_exists: by_components.is_ok() && by_holes.is_ok(),
+                nearest_holes: nearest(problem, components, of_holes, Count::Holes),
+            }
+        }
     }
 }
 
@@ -109,9 +131,8 @@ const MOST_TRIES: usize = 12;
 
 /// The count nearest to `wanted` with which a sequence exists, where `others` is the goal without it; `None` when
 /// none was found. Ranges that lie next to each other, each twice as long as the last, are tried until there is a
-/// sequence, and of that range always the half nearer to the request: what is named can be had, and is the
-/// nearest unless attempts ran out.
-fn nearest(problem: &Problem<'_>, others: Goal, wanted: Wanted, count: Count) -> Option<u32> {
+/// sequence, and of that range always the half nearer to the request.
+fn nearest(problem: &Problem<'_>, others: Goal, wanted: Wanted, count: Count) -> Option<Nearest> {
     let attempt = |a: u32, b: u32| {
         let range = Wanted::between(a.min(b), a.max(b)).expect("the ends are in order");
         let solution = solve(problem, count.wanted(others, range))?;
@@ -119,7 +140,7 @@ fn nearest(problem: &Problem<'_>, others: Goal, wanted: Wanted, count: Count) ->
         let topology = problem.shape.topology(pieces).expect("a solution adds up");
         Ok::<u32, Unsolved>(count.of(topology))
     };
-    // From the count next to the request away from it.
+    // From the count next to the request away from it; also the first that was not refused, if there is one.
     let side = |next: u32, is_above: bool| {
         let away = |from: u32, by: u32| match is_above {
             true => from.saturating_add(by),
@@ -140,12 +161,17 @@ fn nearest(problem: &Problem<'_>, others: Goal, wanted: Wanted, count: Count) ->
                     near = away(reach, 1);
                     length *= 2;
                 }
-                Err(_) => break,
+                // No count is beyond.
+                Err(Unsolved::Infeasible) if far.is_none() => return (found, None),
+                Err(Unsolved::Infeasible) => return (found, found),
+                Err(Unsolved::TooLarge { .. }) => break,
             }
         }
-        found
+        (found, Some(near))
     };
-    let below = wanted.least().checked_sub(1).and_then(|next| side(next, false));
-    let above = wanted.most().checked_add(1).and_then(|next| side(next, true));
-    [below, above].into_iter().flatten().min_by_key(|&n| (wanted.distance(n), n))
+    let below = wanted.least().checked_sub(1).map_or((None, None), |next| side(next, false));
+    let above = wanted.most().checked_add(1).map_or((None, None), |next| side(next, true));
+    let found = [below.0, above.0].into_iter().flatten().min_by_key(|&n| (wanted.distance(n), n))?;
+    let open = [below.1, above.1].into_iter().flatten().map(|n| wanted.distance(n)).min();
+    Some(Nearest { count: found, is_proven: open.is_none_or(|open| open >= wanted.distance(found)) })
 }

@@ -23,29 +23,33 @@ pub(super) fn lengths(problem: &Problem<'_>, longest: u32) -> BTreeSet<u32> {
         }
     }
     let layer = pieces * words;
-    let mut firsts = vec![0u64; (longest as usize + 1) * layer];
-    for piece in 0..pieces {
-        let may_begin = problem.shape == Shape::Ring || problem.begin[piece].is_some();
-        if may_begin && problem.widths[piece] <= longest {
-            let (word, bit) = bit(first_of(piece));
-            firsts[problem.widths[piece] as usize * layer + piece * words + word] |= bit;
-        }
-    }
+    // Only as many lengths as the widest piece has bins are open at a time.
+    let layers = problem.widths.iter().max().map_or(1, |&w| w as usize).min(longest as usize) + 1;
+    let mut firsts = vec![0u64; layers * layer];
+    let place = |length: u32, piece: usize| length as usize % layers * layer + piece * words;
+    let mut here = vec![0u64; words];
     let mut found = BTreeSet::new();
-    for length in 1..=longest as usize {
-        let (here, longer_ones) = firsts[length * layer..].split_at_mut(layer);
+    for length in 1..=longest {
         for piece in 0..pieces {
-            let met = &here[piece * words..][..words];
-            if met.iter().all(|&w| w == 0) {
+            let at = place(length, piece);
+            here.copy_from_slice(&firsts[at..at + words]);
+            firsts[at..at + words].fill(0);
+            let may_begin = problem.shape == Shape::Ring || problem.begin[piece].is_some();
+            if may_begin && problem.widths[piece] == length {
+                let (word, bit) = bit(first_of(piece));
+                here[word] |= bit;
+            }
+            if here.iter().all(|&w| w == 0) {
                 continue;
             }
-            if met.iter().zip(&stops[piece * words..]).any(|(a, b)| a & b != 0) {
-                found.insert(length as u32);
+            if here.iter().zip(&stops[piece * words..]).any(|(a, b)| a & b != 0) {
+                found.insert(length);
             }
             for step in &problem.steps[piece] {
-                let at = (problem.widths[step.to] as usize - 1) * layer + step.to * words;
-                if let Some(to) = longer_ones.get_mut(at..at + words) {
-                    to.iter_mut().zip(met).for_each(|(to, &from)| *to |= from);
+                let longer = length.saturating_add(problem.widths[step.to]);
+                if longer <= longest {
+                    let at = place(longer, step.to);
+                    firsts[at..at + words].iter_mut().zip(&here).for_each(|(to, &from)| *to |= from);
                 }
             }
         }

@@ -38,7 +38,7 @@ mod variety;
 
 pub use best::{best, canonical};
 pub use census::Census;
-pub use explain::{Refusal, explain};
+pub use explain::{Nearest, Refusal, explain};
 pub use problem::{Cost, Problem, Solution, Step, Unsolved};
 pub use random::Random;
 pub use variety::{Variety, autocorrelation, evenness, longest_repeat};

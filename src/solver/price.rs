@@ -60,9 +60,10 @@ impl Sum {
                 let most = ((*most as f64 * part) as i64).max(1);
                 (-most, most)
             }
-            Self::Count { between, .. } => {
-                ((*between.start() as f64 * part).floor() as i64, (*between.end() as f64 * part).ceil() as i64)
-            }
+            Self::Count { between, .. } => (
+                (*between.start() as f64 * part).floor() as i64,
+                (*between.end() as f64 * part).ceil() as i64,
+            ),
         }
     }
 }
@@ -154,7 +155,11 @@ pub(super) fn price(
     };
     let tangent = |at: i64| {
         let run = bound(side * at);
-        Tangent { at, value: run.cost.saturating_sub(at.saturating_mul(limit)), slope: side * run.sum - limit }
+        Tangent {
+            at,
+            value: run.cost.saturating_sub(at.saturating_mul(limit)),
+            slope: side * run.sum - limit,
+        }
     };
     let mut low = Tangent { at: 0, value: free.cost, slope: side * free.sum - limit };
     let (highest, growth) = match sum {

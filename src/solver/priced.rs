@@ -76,8 +76,7 @@ impl Passes {
     }
 
     fn priced(&self, problem: &Problem<'_>, prices: Prices) -> Option<Priced> {
-        let table =
-            estimate(problem, &self.graph, problem.share(WORK_LIMIT), |toll| prices.with_cost(toll))?;
+        let table = estimate(problem, &self.graph, problem.share(WORK_LIMIT), |toll| prices.with_cost(toll))?;
         Some(Priced { prices, table })
     }
 

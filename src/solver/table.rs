@@ -434,7 +434,8 @@ mod tests {
     #[test]
     fn rows_that_recur_are_not_kept() {
         let edges = [vec![(1, 1, 2)], vec![(2, 2, 5)], vec![(0, 1, 0), (0, 3, 9)], vec![]];
-        let mut table = Table::new(graph(&edges).into(), 1_000_000..=1_000_000, usize::MAX, |toll: Toll| toll.cost);
+        let mut table =
+            Table::new(graph(&edges).into(), 1_000_000..=1_000_000, usize::MAX, |toll: Toll| toll.cost);
         assert!(table.bytes() < 10_000, "{}", table.bytes());
         table.load(0);
         // 250,000 rounds of four bins: 0 to 1 to 2 to 0, and the last ends at 2.
