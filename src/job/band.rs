@@ -41,7 +41,13 @@ const CHORD_TRIES: [f64; 4] = [1.0, 0.25, 0.06, 0.015];
 pub(super) struct Drawn {
     drawing: SvgDocument,
     pub(super) found: SvgReport,
+    /// The chord error that it took.
+    chord_mm: f64,
 }
+
+/// When a drawing has not the counts of the part, what is finer than the chord error was lost: it is drawn again within
+/// these parts of it.
+const DRAWING_TRIES: [f64; 3] = [1.0, 0.25, 0.06];
 
 /// What a drawing without a file is called.
 const DRAWING: &str = "the drawing";
@@ -177,7 +183,7 @@ impl Band {
         let mut report = self.report.clone();
         let expected = self.expected();
         let drawn = drawn.map_or_else(|| self.drawn(&mut clock), Ok);
-        let Drawn { drawing, found } = drawn.map_err(|error| match error {
+        let Drawn { drawing, found, chord_mm } = drawn.map_err(|error| match error {
             JobError::Mismatch { mismatch, remedy, .. } => {
                 let shown = outputs.iter().find(|o| o.format() == Format::Svg).or(outputs.first());
                 let file = shown.map_or_else(|| DRAWING.into(), |o| name(o.target()));
@@ -232,6 +238,13 @@ impl Band {
                 narrowest.width_mm
             ));
         }
+        if chord_mm < self.job.tolerances.chord_mm() {
+            report.made.notes.push(format!(
+                "drawn within {chord_mm} mm instead of {} mm, at which something so fine would have been lost that the counts had changed",
+                self.job.tolerances.chord_mm()
+            ));
+            report.chord_mm = chord_mm;
+        }
         report.made.certificate.seal([found.components, found.holes], digests);
         report.components = found.components;
         report.holes = found.holes;
@@ -254,10 +267,22 @@ impl Band {
 
     /// The drawing, which has passed: the promise at the machine's tolerance is checked on it, so it is always made.
     pub(super) fn drawn(&self, clock: &mut Clock<'_>) -> Result<Drawn, JobError> {
-        let drawing = clock.time(Stage::Svg, || self.svg())?;
-        let found = clock.time(Stage::Verify, || self.read_svg(drawing.text.as_bytes()))?;
-        found.check(&self.expected()).map_err(|mismatch| self.mismatch(DRAWING.into(), mismatch, &found))?;
-        Ok(Drawn { drawing, found })
+        let mut wrong = None;
+        for chord_mm in DRAWING_TRIES.map(|share| share * self.job.tolerances.chord_mm()) {
+            let drawing = clock.time(Stage::Svg, || self.svg_within(chord_mm))?;
+            let found = clock.time(Stage::Verify, || self.read_svg(drawing.text.as_bytes(), chord_mm))?;
+            match found.check(&self.expected()) {
+                Ok(()) => return Ok(Drawn { drawing, found, chord_mm }),
+                Err(mismatch) => {
+                    let is_count = matches!(mismatch, Mismatch::Components { .. } | Mismatch::Holes { .. });
+                    wrong.get_or_insert_with(|| self.mismatch(DRAWING.into(), mismatch, &found));
+                    if !is_count {
+                        break;
+                    }
+                }
+            }
+        }
+        Err(wrong.expect("a try either returns or is wrong"))
     }
 
     /// The part as an SVG drawing.
@@ -265,10 +290,14 @@ impl Band {
     /// # Errors
     /// [`JobError::Export`] when the drawing cannot be made.
     pub fn svg(&self) -> Result<SvgDocument, JobError> {
+        self.svg_within(self.job.tolerances.chord_mm())
+    }
+
+    fn svg_within(&self, chord_mm: f64) -> Result<SvgDocument, JobError> {
         let options = SvgOptions {
             width_mm: self.part.page_mm.x,
             height_mm: self.part.page_mm.y,
-            chord_mm: self.job.tolerances.chord_mm() * SVG_SHARE,
+            chord_mm: chord_mm * SVG_SHARE,
             title: None,
             description: Some(format!("{} of {}", self.report.generator, self.report.exemplar.file)),
         };
@@ -284,8 +313,8 @@ impl Band {
         Ok(export::stl(&solid, self.report.generator)?)
     }
 
-    fn read_svg(&self, bytes: &[u8]) -> Result<SvgReport, JobError> {
-        verify::read_svg(bytes, self.job.tolerances.chord_mm() / 4.0)
+    fn read_svg(&self, bytes: &[u8], chord_mm: f64) -> Result<SvgReport, JobError> {
+        verify::read_svg(bytes, chord_mm / 4.0)
             .map_err(|error| JobError::Unjudged { file: DRAWING.into(), error })
     }
 

@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use super::ground::Ground;
+use super::ground::{Ground, nearest_step};
 use super::links::{Link, links};
 use super::place::{Place, Prober};
 use super::trial::{Purpose, REQUIRED, Site, Verdict};
 use super::{Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts};
-use crate::planar::{EdgeIndex, Grid, GridPoint, Region, Sets};
+use crate::planar::{EdgeIndex, GridPoint, Region, Sets};
 
 /// A machine's narrowest width is exceeded by this: what is just as wide is lost in rounding.
 const SPARE: f64 = 1.05;
@@ -107,10 +107,6 @@ pub(super) fn lay(
     Err(BridgeError::NoPlace { kind, done, needed, width_mm })
 }
 
-fn nearest_step(grid: Grid, p: glam::DVec2) -> GridPoint {
-    GridPoint::new(grid.steps(p.x), grid.steps(p.y))
-}
-
 /// Bridges of one kind while they are laid.
 struct Layer<'a> {
     prober: Prober<'a>,
@@ -165,7 +161,7 @@ impl Layer<'_> {
                 let purpose =
                     if is_alone { Purpose::Join } else { Purpose::JoinCrowd(self.needed - self.done) };
                 let prober = Prober { width_mm: wider * self.prober.width_mm, ..self.prober };
-                let places = prober.between(link.rims, limit, places);
+                let places = prober.between(&link, limit, places);
                 let is_laid = self.lay_best(&places, link.distance_mm, purpose, sets);
                 if !is_laid && number + 1 < TRIES.len() {
                     again.push((link, number + 1));
