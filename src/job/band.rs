@@ -38,16 +38,14 @@ const CHORD_TRIES: [f64; 4] = [1.0, 0.25, 0.06, 0.015];
 
 /// A drawing that has passed, and what was found in it.
 #[derive(Debug, Clone)]
-pub(super) struct Drawn {
+struct Drawn {
     drawing: SvgDocument,
-    pub(super) found: SvgReport,
-    /// The chord error that it took.
-    chord_mm: f64,
+    found: SvgReport,
 }
 
-/// When a drawing has not the counts of the part, what is finer than the chord error was lost: it is drawn again within
-/// these parts of it.
-const DRAWING_TRIES: [f64; 3] = [1.0, 0.25, 0.06];
+/// When a drawing has not the counts of its part, what is finer than the chord error was lost, and the band is made again
+/// within these parts of it.
+const FINER_CHORDS: [f64; 2] = [0.25, 0.0625];
 
 /// What a drawing without a file is called.
 const DRAWING: &str = "the drawing";
@@ -62,6 +60,8 @@ pub struct Band {
     /// What the part has, with bridges.
     pub(super) counts: Counts,
     pub(super) report: BandReport,
+    /// The drawing, once it has passed.
+    drawn: Option<Drawn>,
 }
 
 impl Band {
@@ -87,17 +87,51 @@ impl Band {
         let runs = plan_runs(job, &mut cut, &map, &mut clock)?;
         let mut bands = Vec::with_capacity(runs.plans.len());
         for (plan, planned) in runs.plans {
-            let mut band = Self::made(job, &cut, plan, planned, &map, curve_input.clone(), &mut clock)?;
-            if let Some(width_mm) = runs.bridge_mm {
-                let inside = bridging::inside(&map).map(|p| p + band.part.shift_mm);
-                clock.time(Stage::Bridge, || band.lay_bridges(width_mm, inside))?;
+            let mut make = |job: &BandJob| {
+                let (plan, curve) = (plan.clone(), curve_input.clone());
+                let mut band = Self::made(job, &cut, plan, planned, &map, curve, &mut clock)?;
+                if let Some(width_mm) = runs.bridge_mm {
+                    let inside = bridging::inside(&map).map(|p| p + band.part.shift_mm);
+                    clock.time(Stage::Bridge, || band.lay_bridges(width_mm, inside))?;
+                }
+                let drawn = band.drawn(&mut clock);
                 band.report.made.times.clone_from(&clock.times);
-            }
+                Ok((band, drawn))
+            };
+            let mut band = Self::fine_enough(job, &mut make)?;
             band.report.log10_sequences = runs.ln_sequences.map(|ln| ln / std::f64::consts::LN_10);
             band.report.drawn_exactly = runs.is_exact;
             bands.push(band);
         }
         Ok(bands)
+    }
+
+    /// What `make` makes, within a finer chord error than was asked for where its drawing would lose something. A drawing
+    /// that does not pass is left for [`Band::deliver`] to tell of.
+    fn fine_enough(
+        job: &BandJob,
+        make: &mut dyn FnMut(&BandJob) -> Result<(Self, Result<Drawn, JobError>), JobError>,
+    ) -> Result<Self, JobError> {
+        let (mut first, drawn) = make(job)?;
+        match drawn {
+            Ok(drawn) => first.drawn = Some(drawn),
+            Err(JobError::Mismatch {
+                mismatch: Mismatch::Components { .. } | Mismatch::Holes { .. }, ..
+            }) => {
+                let asked_mm = job.tolerances.chord_mm();
+                for chord_mm in FINER_CHORDS.map(|part| part * asked_mm) {
+                    let Some(tolerances) = job.tolerances.with_chord_mm(chord_mm) else { break };
+                    let Ok((mut band, Ok(drawn))) = make(&BandJob { tolerances, ..job.clone() }) else { continue };
+                    band.drawn = Some(drawn);
+                    band.report.made.notes.push(format!(
+                        "made within {chord_mm} mm instead of {asked_mm} mm, at which something so fine was lost that the counts changed"
+                    ));
+                    return Ok(band);
+                }
+            }
+            Err(_) => {}
+        }
+        Ok(first)
     }
 
     /// The band that follows a plan.
@@ -114,7 +148,7 @@ impl Band {
         let report =
             describe(job, cut, &plan, planned, map, &outline, &part, curve_input, clock.times.clone());
         let counts = Counts::of(&part.region);
-        Ok(Self { job: job.clone(), part, plan, planned, counts, report })
+        Ok(Self { job: job.clone(), part, plan, planned, counts, report, drawn: None })
     }
 
     /// Gives the part bridges of at least `width_mm` so that it meets the goal. `inside` is a point in the inside of
@@ -166,24 +200,22 @@ impl Band {
         progress: &mut dyn FnMut(Stage),
     ) -> Result<BandReport, JobError> {
         self.job.check_outputs(outputs, report_file)?;
-        let (report, pending) = self.deliver(outputs, None, progress)?;
+        let (report, pending) = self.deliver(outputs, progress)?;
         persist(pending, report_file.map(|target| (target, report.to_json())))?;
         Ok(report)
     }
 
-    /// Every output, encoded, read again and counted, on its way to its name; and the report. `drawn` is what
-    /// [`Band::drawn`] gave, if it was asked before.
+    /// Every output, encoded, read again and counted, on its way to its name; and the report.
     pub(super) fn deliver(
         &self,
         outputs: &[Output],
-        drawn: Option<Drawn>,
         progress: &mut dyn FnMut(Stage),
     ) -> Result<(BandReport, Vec<Pending>), JobError> {
         let mut clock = Clock::new(progress);
         let mut report = self.report.clone();
         let expected = self.expected();
-        let drawn = drawn.map_or_else(|| self.drawn(&mut clock), Ok);
-        let Drawn { drawing, found, chord_mm } = drawn.map_err(|error| match error {
+        let drawn = self.drawn.clone().map_or_else(|| self.drawn(&mut clock), Ok);
+        let Drawn { drawing, found } = drawn.map_err(|error| match error {
             JobError::Mismatch { mismatch, remedy, .. } => {
                 let shown = outputs.iter().find(|o| o.format() == Format::Svg).or(outputs.first());
                 let file = shown.map_or_else(|| DRAWING.into(), |o| name(o.target()));
@@ -238,13 +270,6 @@ impl Band {
                 narrowest.width_mm
             ));
         }
-        if chord_mm < self.job.tolerances.chord_mm() {
-            report.made.notes.push(format!(
-                "drawn within {chord_mm} mm instead of {} mm, at which something so fine would have been lost that the counts had changed",
-                self.job.tolerances.chord_mm()
-            ));
-            report.chord_mm = chord_mm;
-        }
         report.made.certificate.seal([found.components, found.holes], digests);
         report.components = found.components;
         report.holes = found.holes;
@@ -266,23 +291,11 @@ impl Band {
     }
 
     /// The drawing, which has passed: the promise at the machine's tolerance is checked on it, so it is always made.
-    pub(super) fn drawn(&self, clock: &mut Clock<'_>) -> Result<Drawn, JobError> {
-        let mut wrong = None;
-        for chord_mm in DRAWING_TRIES.map(|share| share * self.job.tolerances.chord_mm()) {
-            let drawing = clock.time(Stage::Svg, || self.svg_within(chord_mm))?;
-            let found = clock.time(Stage::Verify, || self.read_svg(drawing.text.as_bytes(), chord_mm))?;
-            match found.check(&self.expected()) {
-                Ok(()) => return Ok(Drawn { drawing, found, chord_mm }),
-                Err(mismatch) => {
-                    let is_count = matches!(mismatch, Mismatch::Components { .. } | Mismatch::Holes { .. });
-                    wrong.get_or_insert_with(|| self.mismatch(DRAWING.into(), mismatch, &found));
-                    if !is_count {
-                        break;
-                    }
-                }
-            }
-        }
-        Err(wrong.expect("a try either returns or is wrong"))
+    fn drawn(&self, clock: &mut Clock<'_>) -> Result<Drawn, JobError> {
+        let drawing = clock.time(Stage::Svg, || self.svg())?;
+        let found = clock.time(Stage::Verify, || self.read_svg(drawing.text.as_bytes()))?;
+        found.check(&self.expected()).map_err(|mismatch| self.mismatch(DRAWING.into(), mismatch, &found))?;
+        Ok(Drawn { drawing, found })
     }
 
     /// The part as an SVG drawing.
@@ -290,14 +303,10 @@ impl Band {
     /// # Errors
     /// [`JobError::Export`] when the drawing cannot be made.
     pub fn svg(&self) -> Result<SvgDocument, JobError> {
-        self.svg_within(self.job.tolerances.chord_mm())
-    }
-
-    fn svg_within(&self, chord_mm: f64) -> Result<SvgDocument, JobError> {
         let options = SvgOptions {
             width_mm: self.part.page_mm.x,
             height_mm: self.part.page_mm.y,
-            chord_mm: chord_mm * SVG_SHARE,
+            chord_mm: self.job.tolerances.chord_mm() * SVG_SHARE,
             title: None,
             description: Some(format!("{} of {}", self.report.generator, self.report.exemplar.file)),
         };
@@ -313,8 +322,14 @@ impl Band {
         Ok(export::stl(&solid, self.report.generator)?)
     }
 
-    fn read_svg(&self, bytes: &[u8], chord_mm: f64) -> Result<SvgReport, JobError> {
-        verify::read_svg(bytes, chord_mm / 4.0)
+    /// What was found in the drawing, which is kept for [`Band::deliver`].
+    pub(super) fn pass(&mut self, clock: &mut Clock<'_>) -> Result<&SvgReport, JobError> {
+        let drawn = self.drawn(clock)?;
+        Ok(&self.drawn.insert(drawn).found)
+    }
+
+    fn read_svg(&self, bytes: &[u8]) -> Result<SvgReport, JobError> {
+        verify::read_svg(bytes, self.job.tolerances.chord_mm() / 4.0)
             .map_err(|error| JobError::Unjudged { file: DRAWING.into(), error })
     }
 
