@@ -116,12 +116,15 @@ impl Band {
         match drawn {
             Ok(drawn) => first.drawn = Some(drawn),
             Err(JobError::Mismatch {
-                mismatch: Mismatch::Components { .. } | Mismatch::Holes { .. }, ..
+                mismatch: Mismatch::Components { .. } | Mismatch::Holes { .. },
+                ..
             }) => {
                 let asked_mm = job.tolerances.chord_mm();
                 for chord_mm in FINER_CHORDS.map(|part| part * asked_mm) {
                     let Some(tolerances) = job.tolerances.with_chord_mm(chord_mm) else { break };
-                    let Ok((mut band, Ok(drawn))) = make(&BandJob { tolerances, ..job.clone() }) else { continue };
+                    let Ok((mut band, Ok(drawn))) = make(&BandJob { tolerances, ..job.clone() }) else {
+                        continue;
+                    };
                     band.drawn = Some(drawn);
                     band.report.made.notes.push(format!(
                         "made within {chord_mm} mm instead of {asked_mm} mm, at which something so fine was lost that the counts changed"

@@ -79,8 +79,7 @@ pub(super) fn plan_runs(
     let mut hint = String::new();
     // Without bridges allowed, looking for what they could do must not take longer than the refusal itself.
     if bridging::can_help(&error) && (bridge_mm.is_some() || matches!(error, PlanError::Refused { .. })) {
-        let memory_limit =
-            if bridge_mm.is_some() { options.memory_limit / RELAXED_PART } else { HINT_BYTES };
+        let memory_limit = if bridge_mm.is_some() { options.memory_limit / RELAXED_PART } else { HINT_BYTES };
         let relaxed = || bridging::relaxed_plan(&cut.catalogue, &options, memory_limit);
         if let Some(plan) = clock.time(Stage::Solve, relaxed) {
             let run = with_topology(cut, &options, plan);

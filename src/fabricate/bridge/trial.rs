@@ -31,7 +31,7 @@ const LARGEST_POCKET: f64 = 1.5;
 const ARC: f64 = 0.03;
 
 /// What a bridge is to do.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Purpose {
     /// Make one loop.
     Loop,
@@ -46,6 +46,14 @@ impl Purpose {
     pub(super) fn most(self) -> usize {
         if let Self::JoinCrowd(most) = self { most } else { 1 }
     }
+}
+
+/// A question to a [`Site`]: a bridge, what it is for, and what was laid before within its window.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(super) struct Asked {
+    corners: Vec<GridPoint>,
+    purpose: Purpose,
+    beside: Vec<Vec<GridPoint>>,
 }
 
 /// How a bridge passed.
@@ -122,11 +130,28 @@ impl<'a> Site<'a> {
         Region::fill(self.ground.grid, &ink.chain(laid).collect::<Vec<_>>(), FillRule::Positive)
     }
 
+    /// All that the verdict on a bridge depends on, as the contours are always the same.
+    pub(super) fn asked(&self, corners: &[DVec2; 4], purpose: Purpose) -> Asked {
+        let bridge = self.on_grid(corners);
+        let [low, high] = self.window_around(&bridge);
+        Asked { beside: self.laid_in(low, high).cloned().collect(), corners: bridge.path, purpose }
+    }
+
+    fn window_around(&self, bridge: &Laid) -> [DVec2; 2] {
+        let largest = self.width_mm.max(2.0 * self.erosion_mm).max(2.0 * self.dilation_mm);
+        [bridge.low - WINDOW * largest, bridge.high + WINDOW * largest]
+    }
+
+    /// The outlines that were laid and meet a box.
+    fn laid_in(&self, low: DVec2, high: DVec2) -> impl Iterator<Item = &Vec<GridPoint>> {
+        let meets = move |laid: &&Laid| laid.low.cmple(high).all() && laid.high.cmpge(low).all();
+        self.laid.iter().filter(meets).map(|laid| &laid.path)
+    }
+
     /// Tries a bridge; `None` when it does not serve its purpose.
     pub(super) fn try_out(&self, corners: &[DVec2; 4], purpose: Purpose) -> Option<Verdict> {
         let bridge = self.on_grid(corners);
-        let largest = self.width_mm.max(2.0 * self.erosion_mm).max(2.0 * self.dilation_mm);
-        let (low, high) = (bridge.low - WINDOW * largest, bridge.high + WINDOW * largest);
+        let [low, high] = self.window_around(&bridge);
         let mut paths = self.window(low, high);
         let before = paths.len();
         let without = Region::fill(self.ground.grid, &paths, FillRule::Positive);
@@ -222,7 +247,7 @@ impl<'a> Site<'a> {
             paths.iter_mut().for_each(|path| path.reverse());
             paths.push(frame(least, greatest));
         }
-        paths.extend(self.laid.iter().filter(|l| meets(l.low, l.high)).map(|l| l.path.clone()));
+        paths.extend(self.laid_in(low, high).cloned());
         paths
     }
 }
