@@ -67,6 +67,30 @@ pub struct Band {
 impl Band {
     /// The bands that the job's choice takes, at least one.
     pub(super) fn all(job: &BandJob, progress: &mut dyn FnMut(Stage)) -> Result<Vec<Self>, JobError> {
+        let (bands, is_fine_enough) = Self::all_within_chord(job, progress)?;
+        if is_fine_enough {
+            return Ok(bands);
+        }
+        let asked_mm = job.tolerances.chord_mm();
+        for chord_mm in FINER_CHORDS.map(|part| part * asked_mm) {
+            let Some(tolerances) = job.tolerances.with_chord_mm(chord_mm) else { break };
+            // The exemplar too is read anew, as what is lost may have come too close there.
+            let finer = BandJob { tolerances, ..job.clone() };
+            if let Ok((mut bands, true)) = Self::all_within_chord(&finer, progress) {
+                bands.iter_mut().for_each(|band| band.report.made.notes.push(format!(
+                    "made within {chord_mm} mm instead of {asked_mm} mm, at which something so fine was lost that the counts changed"
+                )));
+                return Ok(bands);
+            }
+        }
+        Ok(bands)
+    }
+
+    /// The bands, and whether their drawings have the counts of their parts.
+    fn all_within_chord(
+        job: &BandJob,
+        progress: &mut dyn FnMut(Stage),
+    ) -> Result<(Vec<Self>, bool), JobError> {
         let mut clock = Clock::new(progress);
         let options = &job.options;
         let (exemplar, curve, curve_input) = clock.time(Stage::Read, || {
@@ -86,55 +110,23 @@ impl Band {
         let map = clock.time(Stage::Map, || BandMap::new(curve, -half, half))?;
         let runs = plan_runs(job, &mut cut, &map, &mut clock)?;
         let mut bands = Vec::with_capacity(runs.plans.len());
+        let mut is_fine_enough = true;
         for (plan, planned) in runs.plans {
-            let mut make = |job: &BandJob| {
-                let (plan, curve) = (plan.clone(), curve_input.clone());
-                let mut band = Self::made(job, &cut, plan, planned, &map, curve, &mut clock)?;
-                if let Some(width_mm) = runs.bridge_mm {
-                    let inside = bridging::inside(&map).map(|p| p + band.part.shift_mm);
-                    clock.time(Stage::Bridge, || band.lay_bridges(width_mm, inside))?;
-                }
-                let drawn = band.drawn(&mut clock);
-                band.report.made.times.clone_from(&clock.times);
-                Ok((band, drawn))
-            };
-            let mut band = Self::fine_enough(job, &mut make)?;
+            let mut band = Self::made(job, &cut, plan, planned, &map, curve_input.clone(), &mut clock)?;
+            if let Some(width_mm) = runs.bridge_mm {
+                let inside = bridging::inside(&map).map(|p| p + band.part.shift_mm);
+                clock.time(Stage::Bridge, || band.lay_bridges(width_mm, inside))?;
+            }
+            // A drawing that does not pass is left for `deliver` to tell of, which knows the name of its file.
+            if let Err(JobError::Mismatch { mismatch, .. }) = band.pass(&mut clock) {
+                is_fine_enough &= !matches!(mismatch, Mismatch::Components { .. } | Mismatch::Holes { .. });
+            }
+            band.report.made.times.clone_from(&clock.times);
             band.report.log10_sequences = runs.ln_sequences.map(|ln| ln / std::f64::consts::LN_10);
             band.report.drawn_exactly = runs.is_exact;
             bands.push(band);
         }
-        Ok(bands)
-    }
-
-    /// What `make` makes, within a finer chord error than was asked for where its drawing would lose something. A drawing
-    /// that does not pass is left for [`Band::deliver`] to tell of.
-    fn fine_enough(
-        job: &BandJob,
-        make: &mut dyn FnMut(&BandJob) -> Result<(Self, Result<Drawn, JobError>), JobError>,
-    ) -> Result<Self, JobError> {
-        let (mut first, drawn) = make(job)?;
-        match drawn {
-            Ok(drawn) => first.drawn = Some(drawn),
-            Err(JobError::Mismatch {
-                mismatch: Mismatch::Components { .. } | Mismatch::Holes { .. },
-                ..
-            }) => {
-                let asked_mm = job.tolerances.chord_mm();
-                for chord_mm in FINER_CHORDS.map(|part| part * asked_mm) {
-                    let Some(tolerances) = job.tolerances.with_chord_mm(chord_mm) else { break };
-                    let Ok((mut band, Ok(drawn))) = make(&BandJob { tolerances, ..job.clone() }) else {
-                        continue;
-                    };
-                    band.drawn = Some(drawn);
-                    band.report.made.notes.push(format!(
-                        "made within {chord_mm} mm instead of {asked_mm} mm, at which something so fine was lost that the counts changed"
-                    ));
-                    return Ok(band);
-                }
-            }
-            Err(_) => {}
-        }
-        Ok(first)
+        Ok((bands, is_fine_enough))
     }
 
     /// The band that follows a plan.
