@@ -38,10 +38,14 @@ const CHORD_TRIES: [f64; 4] = [1.0, 0.25, 0.06, 0.015];
 
 /// A drawing that has passed, and what was found in it.
 #[derive(Debug, Clone)]
-pub(super) struct Drawn {
+struct Drawn {
     drawing: SvgDocument,
-    pub(super) found: SvgReport,
+    found: SvgReport,
 }
+
+/// When a drawing has not the counts of its part, what is finer than the chord error was lost, and the band is made again
+/// within these parts of it.
+const FINER_CHORDS: [f64; 2] = [0.25, 0.0625];
 
 /// What a drawing without a file is called.
 const DRAWING: &str = "the drawing";
@@ -56,11 +60,37 @@ pub struct Band {
     /// What the part has, with bridges.
     pub(super) counts: Counts,
     pub(super) report: BandReport,
+    /// The drawing, once it has passed.
+    drawn: Option<Drawn>,
 }
 
 impl Band {
     /// The bands that the job's choice takes, at least one.
     pub(super) fn all(job: &BandJob, progress: &mut dyn FnMut(Stage)) -> Result<Vec<Self>, JobError> {
+        let (bands, is_fine_enough) = Self::all_within_chord(job, progress)?;
+        if is_fine_enough {
+            return Ok(bands);
+        }
+        let asked_mm = job.tolerances.chord_mm();
+        for chord_mm in FINER_CHORDS.map(|part| part * asked_mm) {
+            let Some(tolerances) = job.tolerances.with_chord_mm(chord_mm) else { break };
+            // The exemplar too is read anew, as what is lost may have come too close there.
+            let finer = BandJob { tolerances, ..job.clone() };
+            if let Ok((mut bands, true)) = Self::all_within_chord(&finer, progress) {
+                bands.iter_mut().for_each(|band| band.report.made.notes.push(format!(
+                    "made within {chord_mm} mm instead of {asked_mm} mm, at which something so fine was lost that the counts changed"
+                )));
+                return Ok(bands);
+            }
+        }
+        Ok(bands)
+    }
+
+    /// The bands, and whether their drawings have the counts of their parts.
+    fn all_within_chord(
+        job: &BandJob,
+        progress: &mut dyn FnMut(Stage),
+    ) -> Result<(Vec<Self>, bool), JobError> {
         let mut clock = Clock::new(progress);
         let options = &job.options;
         let (exemplar, curve, curve_input) = clock.time(Stage::Read, || {
@@ -80,18 +110,23 @@ impl Band {
         let map = clock.time(Stage::Map, || BandMap::new(curve, -half, half))?;
         let runs = plan_runs(job, &mut cut, &map, &mut clock)?;
         let mut bands = Vec::with_capacity(runs.plans.len());
+        let mut is_fine_enough = true;
         for (plan, planned) in runs.plans {
             let mut band = Self::made(job, &cut, plan, planned, &map, curve_input.clone(), &mut clock)?;
             if let Some(width_mm) = runs.bridge_mm {
                 let inside = bridging::inside(&map).map(|p| p + band.part.shift_mm);
                 clock.time(Stage::Bridge, || band.lay_bridges(width_mm, inside))?;
-                band.report.made.times.clone_from(&clock.times);
             }
+            // A drawing that does not pass is left for `deliver` to tell of, which knows the name of its file.
+            if let Err(JobError::Mismatch { mismatch, .. }) = band.pass(&mut clock) {
+                is_fine_enough &= !matches!(mismatch, Mismatch::Components { .. } | Mismatch::Holes { .. });
+            }
+            band.report.made.times.clone_from(&clock.times);
             band.report.log10_sequences = runs.ln_sequences.map(|ln| ln / std::f64::consts::LN_10);
             band.report.drawn_exactly = runs.is_exact;
             bands.push(band);
         }
-        Ok(bands)
+        Ok((bands, is_fine_enough))
     }
 
     /// The band that follows a plan.
@@ -108,7 +143,7 @@ impl Band {
         let report =
             describe(job, cut, &plan, planned, map, &outline, &part, curve_input, clock.times.clone());
         let counts = Counts::of(&part.region);
-        Ok(Self { job: job.clone(), part, plan, planned, counts, report })
+        Ok(Self { job: job.clone(), part, plan, planned, counts, report, drawn: None })
     }
 
     /// Gives the part bridges of at least `width_mm` so that it meets the goal. `inside` is a point in the inside of
@@ -160,23 +195,21 @@ impl Band {
         progress: &mut dyn FnMut(Stage),
     ) -> Result<BandReport, JobError> {
         self.job.check_outputs(outputs, report_file)?;
-        let (report, pending) = self.deliver(outputs, None, progress)?;
+        let (report, pending) = self.deliver(outputs, progress)?;
         persist(pending, report_file.map(|target| (target, report.to_json())))?;
         Ok(report)
     }
 
-    /// Every output, encoded, read again and counted, on its way to its name; and the report. `drawn` is what
-    /// [`Band::drawn`] gave, if it was asked before.
+    /// Every output, encoded, read again and counted, on its way to its name; and the report.
     pub(super) fn deliver(
         &self,
         outputs: &[Output],
-        drawn: Option<Drawn>,
         progress: &mut dyn FnMut(Stage),
     ) -> Result<(BandReport, Vec<Pending>), JobError> {
         let mut clock = Clock::new(progress);
         let mut report = self.report.clone();
         let expected = self.expected();
-        let drawn = drawn.map_or_else(|| self.drawn(&mut clock), Ok);
+        let drawn = self.drawn.clone().map_or_else(|| self.drawn(&mut clock), Ok);
         let Drawn { drawing, found } = drawn.map_err(|error| match error {
             JobError::Mismatch { mismatch, remedy, .. } => {
                 let shown = outputs.iter().find(|o| o.format() == Format::Svg).or(outputs.first());
@@ -253,7 +286,7 @@ impl Band {
     }
 
     /// The drawing, which has passed: the promise at the machine's tolerance is checked on it, so it is always made.
-    pub(super) fn drawn(&self, clock: &mut Clock<'_>) -> Result<Drawn, JobError> {
+    fn drawn(&self, clock: &mut Clock<'_>) -> Result<Drawn, JobError> {
         let drawing = clock.time(Stage::Svg, || self.svg())?;
         let found = clock.time(Stage::Verify, || self.read_svg(drawing.text.as_bytes()))?;
         found.check(&self.expected()).map_err(|mismatch| self.mismatch(DRAWING.into(), mismatch, &found))?;
@@ -282,6 +315,12 @@ impl Band {
     pub fn stl(&self) -> Result<Vec<u8>, JobError> {
         let solid = fabricate::extrude(&self.part.region, self.job.options.thickness_mm)?;
         Ok(export::stl(&solid, self.report.generator)?)
+    }
+
+    /// What was found in the drawing, which is kept for [`Band::deliver`].
+    pub(super) fn pass(&mut self, clock: &mut Clock<'_>) -> Result<&SvgReport, JobError> {
+        let drawn = self.drawn(clock)?;
+        Ok(&self.drawn.insert(drawn).found)
     }
 
     fn read_svg(&self, bytes: &[u8]) -> Result<SvgReport, JobError> {

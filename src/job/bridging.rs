@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::plan::{Plan, PlanError, PlanOptions, first_fit};
 use crate::domain::BandMap;
-use crate::fabricate::{self, Bridge, BridgeError, BridgeOptions, Bridged, Counts};
+use crate::fabricate::{self, Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts};
 use crate::pieces::Catalogue;
 use crate::planar::{GridPoint, Region, Tolerances};
 use crate::solver::Refusal;
@@ -136,9 +136,28 @@ pub(super) fn options(width_mm: f64, tolerances: &Tolerances, inside_mm: Option<
     }
 }
 
-/// `region` with bridges as the goal asks.
+/// How many parts are joined so that there are bays to close, in parts of the holes that are missing. Fewer leave more of
+/// the drawing as it is; more find more places.
+const JOINS_PER_HOLE: [usize; 2] = [1, 4];
+
+/// `region` with bridges as the goal asks. Where the bays do not suffice for the holes, parts are joined as far as the
+/// goal allows: between two that are joined there is a bay on either side of the strut.
 pub(super) fn bridged(region: &Region, goal: Goal, options: &BridgeOptions) -> Result<Bridged, BridgeError> {
-    fabricate::bridge(region, wanted(goal, Counts::of(region)), options)
+    let wanted = wanted(goal, Counts::of(region));
+    let laid = fabricate::bridge(region, wanted, options);
+    let Err(BridgeError::NoPlace { kind: BridgeKind::Enclose, done, needed, .. }) = laid else {
+        return laid;
+    };
+    let least = goal.components.map_or(1, |of| of.least().max(1) as usize);
+    let mut fewer: Vec<usize> = JOINS_PER_HOLE
+        .map(|joins| wanted.components.saturating_sub(joins * (needed - done)).max(least))
+        .into_iter()
+        .chain([least])
+        .filter(|&components| components < wanted.components)
+        .collect();
+    fewer.dedup();
+    let joined = |components| fabricate::bridge(region, Counts { components, ..wanted }, options).ok();
+    fewer.into_iter().find_map(joined).map_or(laid, Ok)
 }
 
 /// How far beyond the band's inner border the inside of a ring begins, as a part of the band's height.

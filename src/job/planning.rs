@@ -14,6 +14,10 @@ use crate::topology::{Shape, Topology};
 /// The memory of a search for what bridges could do, in bytes, when they were not asked for.
 const HINT_BYTES: usize = 16 << 20;
 
+/// With bridges, a search for what needs none may take memory in this proportion, and one for what they need in the other.
+const STRICT_PART: usize = 4;
+const RELAXED_PART: usize = 8;
+
 /// The sequences of a job.
 pub(super) struct Runs {
     /// Each with what it adds up to.
@@ -61,7 +65,10 @@ pub(super) fn plan_runs(
     clock: &mut Clock<'_>,
 ) -> Result<Runs, JobError> {
     let options = plan_options(job, cut, map);
-    let error = match strictly(&options, job.options.choice, job.options.counted, cut, clock) {
+    // Where bridges are allowed, the time is better spent on what they need than on a search that may be for nothing.
+    let part = if job.options.bridge_mm.is_some() { STRICT_PART } else { 1 };
+    let strict = PlanOptions { memory_limit: options.memory_limit / part, ..options };
+    let error = match strictly(&strict, job.options.choice, job.options.counted, cut, clock) {
         Ok(Chosen { plans, ln_sequences, is_exact }) => {
             let plans = plans.into_iter().map(|plan| with_topology(cut, &options, plan)).collect();
             return Ok(Runs { plans, bridge_mm: None, ln_sequences, is_exact });
@@ -72,7 +79,7 @@ pub(super) fn plan_runs(
     let mut hint = String::new();
     // Without bridges allowed, looking for what they could do must not take longer than the refusal itself.
     if bridging::can_help(&error) && (bridge_mm.is_some() || matches!(error, PlanError::Refused { .. })) {
-        let memory_limit = if bridge_mm.is_some() { options.memory_limit } else { HINT_BYTES };
+        let memory_limit = if bridge_mm.is_some() { options.memory_limit / RELAXED_PART } else { HINT_BYTES };
         let relaxed = || bridging::relaxed_plan(&cut.catalogue, &options, memory_limit);
         if let Some(plan) = clock.time(Stage::Solve, relaxed) {
             let run = with_topology(cut, &options, plan);

@@ -8,7 +8,7 @@
 //! The ink fills the rectangle: the run of each pass has the exact length between its first and its last ink,
 //! and across it the rows are pressed or stretched, at most as much as a band may be along its length.
 
-use super::band::{Band, Drawn};
+use super::band::Band;
 use super::error::JobError;
 use super::output::{Output, Target, persist};
 use super::plan::Plan;
@@ -27,7 +27,6 @@ use crate::verify::Tiling;
 pub struct Rect {
     /// The second pass, turned back.
     band: Band,
-    drawn: Drawn,
     report: RectReport,
 }
 
@@ -36,9 +35,9 @@ impl Rect {
         let mut clock = Clock::new(progress);
         let found = search(job, &mut clock)?;
         let report = describe(job, &found);
-        let Made { mut band, drawn, .. } = found.second;
+        let Made { mut band, .. } = found.second;
         band.report.made.times = clock.times;
-        Ok(Self { band, drawn, report })
+        Ok(Self { band, report })
     }
 
     /// The part in millimetres, y up from the lower left corner of its page.
@@ -73,9 +72,10 @@ impl Rect {
         progress: &mut dyn FnMut(Stage),
     ) -> Result<RectReport, JobError> {
         self.band.job.check_outputs(outputs, report_file)?;
-        let (found, pending) = self.band.deliver(outputs, Some(self.drawn.clone()), progress)?;
+        let (found, pending) = self.band.deliver(outputs, progress)?;
         let mut report = self.report.clone();
         (report.components, report.holes) = (found.components, found.holes);
+        report.chord_mm = found.chord_mm;
         let notes = report.made.notes.into_iter().chain(found.made.notes).collect();
         report.made = MadeReport { notes, ..found.made };
         persist(pending, report_file.map(|target| (target, report.to_json())))?;

@@ -8,7 +8,7 @@
 
 use glam::DVec2;
 
-use super::band::{Band, Drawn};
+use super::band::Band;
 use super::builder::BandJob;
 use super::cut::{Cut, slice_region};
 use super::error::JobError;
@@ -61,7 +61,6 @@ pub(super) struct Way {
 /// A rectangle that has passed.
 pub(super) struct Made {
     pub(super) band: Band,
-    pub(super) drawn: Drawn,
     /// What its copies make, if it is a tile.
     pub(super) tiling: Option<Tiling>,
 }
@@ -168,16 +167,16 @@ impl Way {
         // What messages call the width of a band is the height of a row here.
         band.report.width_mm = strip.band.report.width_mm;
         // Ink that the machine cannot make may be thicker another way.
-        let drawn = band.drawn(clock)?;
+        let found = band.pass(clock)?;
         let tiling = match tile {
             // One that does not join is one way less, and no fault of a file.
             true => {
-                let tiling = clock.time(Stage::Verify, || verify::tiling(&drawn.found.region));
+                let tiling = clock.time(Stage::Verify, || verify::tiling(&found.region));
                 Some(tiling.map_err(|fault| JobError::Refused(fault.to_string()))?)
             }
             false => None,
         };
-        Ok(Made { band, drawn, tiling })
+        Ok(Made { band, tiling })
     }
 }
 

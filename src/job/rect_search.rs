@@ -100,13 +100,14 @@ pub(super) fn search(job: &RectJob, clock: &mut Clock<'_>) -> Result<Found, JobE
     let goals = goals(job);
     // Bridges across the sides of a tile would have to match too.
     let bridge_mm = job.band.options.bridge_mm.filter(|_| !job.tile);
+    let relaxed = relaxed_goals(job);
     for bar in BARS {
         if let Some(found) = search.at_bar(&mut heights, &goals, bar) {
             return Ok(found);
         }
         if bridge_mm.is_some() {
             search.bridge_mm = bridge_mm;
-            if let Some(found) = search.at_bar(&mut heights, &[Goal::default()], bar) {
+            if let Some(found) = search.at_bar(&mut heights, &relaxed, bar) {
                 return Ok(found);
             }
             search.bridge_mm = None;
@@ -131,6 +132,14 @@ fn goals(job: &RectJob) -> Vec<Goal> {
         None => vec![Goal { components: Some(Wanted::exactly(1)), ..goal }, goal],
         Some(_) => vec![goal],
     }
+}
+
+/// What the rectangle must have before bridges are laid: the components rather than the holes, as slits across strands
+/// show less than struts across gaps.
+fn relaxed_goals(job: &RectJob) -> Vec<Goal> {
+    let goal = job.band.options.goal;
+    let in_part = (goal.components.is_some() && goal.holes.is_some()).then_some(Goal { holes: None, ..goal });
+    in_part.into_iter().chain([Goal::default()]).collect()
 }
 
 /// The topologies that strips are asked for. The rows of a strip that hangs together do so too, mostly.

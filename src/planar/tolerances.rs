@@ -47,6 +47,11 @@ impl Tolerances {
         Ok(Self { chord_mm, min_feature_mm, min_gap_mm })
     }
 
+    /// The same with another chord error; `None` when that is out of range.
+    pub fn with_chord_mm(&self, chord_mm: f64) -> Option<Self> {
+        Self::new(chord_mm, self.min_feature_mm, self.min_gap_mm).ok()
+    }
+
     /// The greatest distance between a curve and what stands for it.
     pub fn chord_mm(&self) -> f64 {
         self.chord_mm

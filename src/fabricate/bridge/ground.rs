@@ -59,6 +59,11 @@ impl Rim {
     }
 }
 
+/// The grid point nearest to `p`.
+pub(super) fn nearest_step(grid: Grid, p: DVec2) -> GridPoint {
+    GridPoint::new(grid.steps(p.x), grid.steps(p.y))
+}
+
 /// All contours of a region, with what they part.
 pub(super) struct Ground {
     /// The contours in the order of [`Region::contours`].

@@ -1,13 +1,16 @@
 //! Laying bridges of one kind: the shortest first, each where it is best.
 
 use std::collections::BTreeSet;
+use std::rc::Rc;
 
-use super::ground::Ground;
+use rustc_hash::FxHashMap;
+
+use super::ground::{Ground, nearest_step};
 use super::links::{Link, links};
 use super::place::{Place, Prober};
-use super::trial::{Purpose, REQUIRED, Site, Verdict};
+use super::trial::{Asked, Purpose, REQUIRED, Site, Verdict};
 use super::{Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts};
-use crate::planar::{EdgeIndex, Grid, GridPoint, Region, Sets};
+use crate::planar::{EdgeIndex, GridPoint, Region, Sets};
 
 /// A machine's narrowest width is exceeded by this: what is just as wide is lost in rounding.
 const SPARE: f64 = 1.05;
@@ -42,6 +45,8 @@ const FIRST_REACH: f64 = 4.0;
 const GOOD_GRADE: usize = 1;
 /// After so many places in a row that would not do, there is none: more would only take longer to say so.
 const MOST_FAILURES: usize = 400;
+/// The most that one bridge changes the count by.
+const LARGEST_CROWD: usize = 16;
 /// How often all bridges of a kind are laid anew: what found no place is then joined first, while there is room.
 const MOST_ROUNDS: usize = 8;
 /// Middles of bridges closer than this, in widths, would overlap.
@@ -67,6 +72,7 @@ pub(super) fn lay(
     // Windows have the counts of the whole but for the rounding of their borders. Should that ever make a
     // difference, the bridge that makes it is looked for and not laid again.
     let mut banned = Vec::new();
+    let mut known = Known::default();
     for _ in 0..MOST_ROUNDS {
         let site = Site::new(&ground, side, width_mm, options);
         let mut layer = Layer {
@@ -76,6 +82,7 @@ pub(super) fn lay(
             needed,
             has,
             banned: &banned,
+            known: &mut known,
             extent_mm: low.distance(high),
             done: 0,
             bridges: Vec::new(),
@@ -107,8 +114,12 @@ pub(super) fn lay(
     Err(BridgeError::NoPlace { kind, done, needed, width_mm })
 }
 
-fn nearest_step(grid: Grid, p: glam::DVec2) -> GridPoint {
-    GridPoint::new(grid.steps(p.x), grid.steps(p.y))
+/// What was found out in earlier rounds, which hardly differ from one to the next.
+#[derive(Default)]
+struct Known {
+    /// Places between two contours, by the number of the try.
+    places: FxHashMap<([usize; 2], usize), Rc<[Place]>>,
+    verdicts: FxHashMap<Asked, Option<Verdict>>,
 }
 
 /// Bridges of one kind while they are laid.
@@ -120,6 +131,7 @@ struct Layer<'a> {
     has: Counts,
     /// The corners of bridges that must not be laid.
     banned: &'a [[[f64; 2]; 4]],
+    known: &'a mut Known,
     extent_mm: f64,
     /// By how many the count has been changed.
     done: usize,
@@ -162,10 +174,14 @@ impl Layer<'_> {
                 let Try { detour: [part, widths], wider, is_alone, places } = TRIES[number];
                 let limit = (1.0 + part) * link.distance_mm + widths * self.prober.width_mm;
                 // Where more than two come close, a bridge may have no room to join two only.
-                let purpose =
-                    if is_alone { Purpose::Join } else { Purpose::JoinCrowd(self.needed - self.done) };
+                let purpose = if is_alone {
+                    Purpose::Join
+                } else {
+                    Purpose::JoinCrowd(LARGEST_CROWD.min(self.needed - self.done))
+                };
                 let prober = Prober { width_mm: wider * self.prober.width_mm, ..self.prober };
-                let places = prober.between(link.rims, limit, places);
+                let found = self.known.places.entry((link.rims, number));
+                let places = Rc::clone(found.or_insert_with(|| prober.between(&link, limit, places).into()));
                 let is_laid = self.lay_best(&places, link.distance_mm, purpose, sets);
                 if !is_laid && number + 1 < TRIES.len() {
                     again.push((link, number + 1));
@@ -255,8 +271,10 @@ impl Layer<'_> {
         nodes
     }
 
-    fn verdict(&self, place: &Place, purpose: Purpose) -> Option<Verdict> {
-        self.site.try_out(&place.corners, purpose)
+    fn verdict(&mut self, place: &Place, purpose: Purpose) -> Option<Verdict> {
+        let asked = self.site.asked(&place.corners, purpose);
+        let site = &self.site;
+        self.known.verdicts.entry(asked).or_insert_with(|| site.try_out(&place.corners, purpose)).clone()
     }
 
     /// The first bridge after which the whole has not the counts that its window had; that the last is one is known.

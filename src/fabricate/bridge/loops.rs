@@ -8,6 +8,10 @@ use crate::planar::IndexedEdge;
 
 /// What is cut off must be larger than this, in squares of the width of a bridge: less is a notch.
 const LEAST_AREA: f64 = 4.0;
+/// A ray first looks this far, in widths, and then twice as far, and so on.
+const LOOK: f64 = 2.0;
+/// What a ray meets sooner than this, in widths, is where it begins.
+const NOT_ITSELF: f64 = 1e-8;
 
 impl Prober<'_> {
     /// Places for bridges of at most `reach_mm` from a contour to itself, the best first.
@@ -15,9 +19,13 @@ impl Prober<'_> {
         let mut places = Vec::new();
         for (number, rim) in self.ground.rims.iter().enumerate() {
             let areas = Areas::new(&rim.points);
+            let mut last = None;
             for (edge, &from) in rim.points.iter().enumerate() {
                 let to = rim.points[(edge + 1) % rim.points.len()];
                 for p in self.along(from, to) {
+                    if self.is_beside(p, &mut last) {
+                        continue;
+                    }
                     let Some((q, other)) = self.opposite(p, to - from, reach_mm) else { continue };
                     if other.contour != number {
                         continue;
@@ -39,15 +47,24 @@ impl Prober<'_> {
     fn opposite(&self, p: DVec2, along: DVec2, reach_mm: f64) -> Option<(DVec2, IndexedEdge)> {
         let left = along.perp().normalize_or_zero();
         let ahead = if self.side == Side::Ink { left } else { -left };
-        let far = p + ahead * reach_mm;
-        let seen = self.index.in_box(p.min(far), p.max(far)).filter_map(|edge| {
-            let (a, b) = (ahead.perp_dot(edge.from - p), ahead.perp_dot(edge.to - p));
-            let t = ahead.dot(edge.from - p) + ahead.dot(edge.to - edge.from) * (a / (a - b));
-            let is_hit = (a > 0.0) != (b > 0.0) && t > 1e-9 * reach_mm && t <= reach_mm;
-            is_hit.then_some((t, edge))
-        });
-        let nearest = seen.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.edge.cmp(&b.1.edge)));
-        nearest.map(|(t, edge)| (p + ahead * t, *edge))
+        // Mostly what is seen is near, and all that lies in the box around a long ray is not worth a look.
+        let mut from = 0.0;
+        while from < reach_mm {
+            let to = f64::max(2.0 * from, LOOK * self.width_mm).min(reach_mm);
+            let [a, b] = [from, to].map(|t| p + ahead * t);
+            let seen = self.index.in_box(a.min(b), a.max(b)).filter_map(|edge| {
+                let (a, b) = (ahead.perp_dot(edge.from - p), ahead.perp_dot(edge.to - p));
+                let t = ahead.dot(edge.from - p) + ahead.dot(edge.to - edge.from) * (a / (a - b));
+                let is_hit = (a > 0.0) != (b > 0.0) && t > NOT_ITSELF * self.width_mm && t <= to;
+                is_hit.then_some((t, edge))
+            });
+            let nearest = seen.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.edge.cmp(&b.1.edge)));
+            if let Some((t, edge)) = nearest {
+                return Some((p + ahead * t, *edge));
+            }
+            from = to;
+        }
+        None
     }
 }
 

@@ -9,16 +9,21 @@
 use glam::DVec2;
 
 use super::ground::{Ground, Side};
+use super::links::Link;
 use crate::planar::EdgeIndex;
 
 /// Rays on either side of the middle one, over the width of a bridge.
 const RAYS: i32 = 3;
 /// Places along a contour, as part of the width of the bridge: closer ones differ by nothing that shows.
 const SPACING: f64 = 0.2;
+/// Vertices closer than this part of the spacing are passed over: contours have far more of them than places differ.
+const DENSEST: f64 = 0.5;
 /// The most places that are probed for one pair of contours; beyond, every second one is left out, and so on.
 const MOST_PLACES: usize = 600;
 /// How deep an end is sunk where there is room, as part of the width: enough that rounding cannot loosen it.
 const SINK: f64 = 0.15;
+/// How far an end stays off what it must not be sunk into, as part of the width: more than a bridge may touch.
+const CLEAR: f64 = 0.02;
 /// A contour that reaches less far into a bridge, as part of its width, is not met: rounding could miss it.
 const TOUCH: f64 = 0.01;
 /// How far a ray looks for the other contour beyond the middle one's hit, as part of the width.
@@ -72,15 +77,17 @@ pub(super) struct Prober<'a> {
 }
 
 impl Prober<'_> {
-    /// The `most` best places where the contours `rims` are at most `limit_mm` apart, the best first.
-    pub(super) fn between(&self, rims: [usize; 2], limit_mm: f64, most: usize) -> Vec<Place> {
+    /// The `most` best places where the contours of `link` are at most `limit_mm` apart, the best first.
+    pub(super) fn between(&self, link: &Link, limit_mm: f64, most: usize) -> Vec<Place> {
+        let Link { rims, ends, .. } = *link;
         let mut axes = Vec::new();
         for [a, b] in [rims, [rims[1], rims[0]]] {
             let (a, b) = (&self.ground.rims[a], &self.ground.rims[b]);
             let margin = DVec2::splat(limit_mm);
+            let mut last = None;
             for edge in a.edges_in(b.low - margin, b.high + margin) {
                 for p in self.along(edge.from, edge.to) {
-                    if b.box_distance(p) > limit_mm {
+                    if b.box_distance(p) > limit_mm || self.is_beside(p, &mut last) {
                         continue;
                     }
                     let q = b.nearest(p);
@@ -92,9 +99,7 @@ impl Prober<'_> {
         }
         let stride = axes.len().div_ceil(MOST_PLACES).max(1);
         // The shortest may not be thinned out.
-        let shortest =
-            axes.iter().copied().min_by(|a, b| (a[0] - a[1]).length().total_cmp(&(b[0] - b[1]).length()));
-        let axes = axes.into_iter().step_by(stride).chain(shortest);
+        let axes = axes.into_iter().step_by(stride).chain([ends]);
         self.ranked(axes.filter_map(|[p, q]| self.probe(p, q)), most)
     }
 
@@ -137,6 +142,15 @@ impl Prober<'_> {
     pub(super) fn along(&self, from: DVec2, to: DVec2) -> impl Iterator<Item = DVec2> + use<> {
         let count = (from.distance(to) / (SPACING * self.width_mm)).ceil().max(1.0) as usize;
         (0..count).map(move |i| from.lerp(to, i as f64 / count as f64))
+    }
+
+    /// Whether `p` is too near to the `last` point of its contour that was looked at; if not, it is the last one now.
+    pub(super) fn is_beside(&self, p: DVec2, last: &mut Option<DVec2>) -> bool {
+        let beside = last.is_some_and(|last| last.distance(p) < DENSEST * SPACING * self.width_mm);
+        if !beside {
+            *last = Some(p);
+        }
+        beside
     }
 
     /// The best first, with those left out that lie beside a better one.
@@ -195,7 +209,9 @@ impl Prober<'_> {
             let hold = hits.iter().map(|h| h.leave - h.enter).sum::<f64>() / hits.len() as f64;
             let lacking = (HOLD * self.width_mm - hold).max(0.0);
             score += mean + SKEW * (deep - shallow) + MISS * self.width_mm * misses / rays + THIN * lacking;
-            let room = (0.5 * (far_side - deep)).max(0.0);
+            let room = 0.5 * (far_side - deep);
+            // Without room a corner would lie on a contour, and rounding would say whether it is cut.
+            let room = if room > 0.0 { room } else { -CLEAR * self.width_mm };
             reach[end] = deep + room.min(SINK * self.width_mm);
             // A corner must be sunk into as well, or the bridge only touches it.
             if let Some(hit) = axis {

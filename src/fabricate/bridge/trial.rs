@@ -12,7 +12,7 @@
 use glam::DVec2;
 
 use super::BridgeOptions;
-use super::ground::{Ground, Side};
+use super::ground::{Ground, Side, nearest_step};
 use crate::planar::{Contour, FillRule, Grid, GridPoint, Part, Region};
 
 /// Erosions that a good bridge withstands, as parts of its width, the best first; then only what is required.
@@ -31,7 +31,7 @@ const LARGEST_POCKET: f64 = 1.5;
 const ARC: f64 = 0.03;
 
 /// What a bridge is to do.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Purpose {
     /// Make one loop.
     Loop,
@@ -46,6 +46,14 @@ impl Purpose {
     pub(super) fn most(self) -> usize {
         if let Self::JoinCrowd(most) = self { most } else { 1 }
     }
+}
+
+/// A question to a [`Site`]: a bridge, what it is for, and what was laid before within its window.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(super) struct Asked {
+    corners: Vec<GridPoint>,
+    purpose: Purpose,
+    beside: Vec<Vec<GridPoint>>,
 }
 
 /// How a bridge passed.
@@ -122,11 +130,30 @@ impl<'a> Site<'a> {
         Region::fill(self.ground.grid, &ink.chain(laid).collect::<Vec<_>>(), FillRule::Positive)
     }
 
+    /// All that the verdict on a bridge depends on, as the contours are always the same.
+    pub(super) fn asked(&self, corners: &[DVec2; 4], purpose: Purpose) -> Asked {
+        let bridge = self.on_grid(corners);
+        let [low, high] = self.window_around(&bridge);
+        Asked { beside: self.laid_in(low, high).cloned().collect(), corners: bridge.path, purpose }
+    }
+
+    fn window_around(&self, bridge: &Laid) -> [DVec2; 2] {
+        let largest = self.width_mm.max(2.0 * self.erosion_mm).max(2.0 * self.dilation_mm);
+        [bridge.low - WINDOW * largest, bridge.high + WINDOW * largest]
+    }
+
+    /// The outlines that were laid and meet a box.
+    fn laid_in(&self, low: DVec2, high: DVec2) -> impl Iterator<Item = &Vec<GridPoint>> {
+        let meets = move |laid: &&Laid| laid.low.cmple(high).all() && laid.high.cmpge(low).all();
+        self.laid.iter().filter(meets).map(|laid| &laid.path)
+    }
+
     /// Tries a bridge; `None` when it does not serve its purpose.
     pub(super) fn try_out(&self, corners: &[DVec2; 4], purpose: Purpose) -> Option<Verdict> {
         let bridge = self.on_grid(corners);
-        let largest = self.width_mm.max(2.0 * self.erosion_mm).max(2.0 * self.dilation_mm);
-        let mut paths = self.window(bridge.low - WINDOW * largest, bridge.high + WINDOW * largest);
+        let [low, high] = self.window_around(&bridge);
+        let mut paths = self.window(low, high);
+        let before = paths.len();
         let without = Region::fill(self.ground.grid, &paths, FillRule::Positive);
         paths.push(bridge.path);
         let mut with = Region::fill(self.ground.grid, &paths, FillRule::Positive);
@@ -155,7 +182,12 @@ impl<'a> Site<'a> {
             [self.erosion_mm, self.dilation_mm].map(|mm| mm.max(part * self.width_mm).max(self.least_mm))
         });
         let levels: Vec<[f64; 2]> = graded.chain([[self.least_mm; 2]]).collect();
-        let grade = levels.iter().position(|&level| withstands(level, 0)).or_else(|| {
+        // What withstands more need not withstand less: walls that are gone with more hide what the bridge does to them.
+        let holds = withstands(levels[REQUIRED], 0);
+        let graded = || levels[..REQUIRED].iter().position(|&level| withstands(level, 0)).unwrap_or(REQUIRED);
+        let least = || levels[REQUIRED + 1] != levels[REQUIRED] && withstands(levels[REQUIRED + 1], 0);
+        let grade = holds.then(graded).or_else(|| least().then_some(REQUIRED + 1));
+        let grade = grade.or_else(|| {
             // What is too thin to last by itself needs no hold, as a hole that is smaller than the slit that opens it.
             let joined: Vec<&Part> = without.parts().iter().filter(|p| !with.parts().contains(p)).collect();
             let lasting = |&level: &[f64; 2]| {
@@ -166,7 +198,12 @@ impl<'a> Site<'a> {
             let least = lasting(&levels[REQUIRED + 1]);
             least.then(|| if lasting(&levels[REQUIRED]) { REQUIRED } else { REQUIRED + 1 })
         })?;
-        Some(Verdict { grade, changes, pockets, area_mm2 })
+        // Where a slit only touches a contour, gap is not joined and ink is severed: such a place is not taken.
+        let is_true = self.side == Side::Gap || {
+            let ink = |paths: &[Vec<GridPoint>]| euler(&self.inverse(paths, low, high));
+            ink(&paths) - ink(&paths[..before]) == change.holes - change.components
+        };
+        is_true.then_some(Verdict { grade, changes, pockets, area_mm2 })
     }
 
     /// The smallest holes that are new, if they are small.
@@ -186,27 +223,44 @@ impl<'a> Site<'a> {
 
     fn on_grid(&self, corners: &[DVec2; 4]) -> Laid {
         let grid = self.ground.grid;
-        Laid::new(grid, corners.iter().map(|p| GridPoint::new(grid.steps(p.x), grid.steps(p.y))).collect())
+        Laid::new(grid, corners.iter().map(|&p| nearest_step(grid, p)).collect())
+    }
+
+    /// What is not material in the window.
+    fn inverse(&self, paths: &[Vec<GridPoint>], low: DVec2, high: DVec2) -> Region {
+        let grid = self.ground.grid;
+        let [least, greatest] = [low, high].map(|p| nearest_step(grid, p));
+        let turned = paths.iter().map(|path| path.iter().rev().copied().collect());
+        let paths: Vec<Vec<GridPoint>> = turned.chain([frame(least, greatest)]).collect();
+        Region::fill(grid, &paths, FillRule::Positive)
     }
 
     /// Paths whose positive winding is the material in the window, with the bridges that were laid.
     fn window(&self, low: DVec2, high: DVec2) -> Vec<Vec<GridPoint>> {
         let grid = self.ground.grid;
         let meets = |a: DVec2, b: DVec2| a.cmple(high).all() && b.cmpge(low).all();
-        let steps = |p: DVec2| GridPoint::new(grid.steps(p.x), grid.steps(p.y));
-        let (least, greatest) = (steps(low), steps(high));
+        let [least, greatest] = [low, high].map(|p| nearest_step(grid, p));
         let rims = self.ground.rims.iter().filter(|rim| meets(rim.low, rim.high));
         let mut paths: Vec<Vec<GridPoint>> =
             rims.map(|rim| clipped(&rim.steps, least, greatest)).filter(|path| path.len() > 2).collect();
         if self.side == Side::Ink {
             paths.iter_mut().for_each(|path| path.reverse());
-            let corners =
-                [(least.x, least.y), (greatest.x, least.y), (greatest.x, greatest.y), (least.x, greatest.y)];
-            paths.push(corners.map(|(x, y)| GridPoint::new(x, y)).to_vec());
+            paths.push(frame(least, greatest));
         }
-        paths.extend(self.laid.iter().filter(|l| meets(l.low, l.high)).map(|l| l.path.clone()));
+        paths.extend(self.laid_in(low, high).cloned());
         paths
     }
+}
+
+fn frame(low: GridPoint, high: GridPoint) -> Vec<GridPoint> {
+    [(low.x, low.y), (high.x, low.y), (high.x, high.y), (low.x, high.y)]
+        .map(|(x, y)| GridPoint::new(x, y))
+        .to_vec()
+}
+
+/// Components less holes.
+fn euler(region: &Region) -> isize {
+    region.components() as isize - region.holes() as isize
 }
 
 fn alone(part: &Part, grid: Grid) -> Region {
