@@ -73,6 +73,76 @@ fn copies_of_a_tile_join() {
 }
 
 #[test]
+fn a_tile_may_be_of_several_strands() {
+    let room = Room::with(&["vine.svg", "wave.svg"]);
+    for (exemplar, width, is_one) in [("vine", "10mm", true), ("wave", "9mm", false)] {
+        let report = rect(&room, &format!("{exemplar}.svg --size 30x30mm --width {width} --tile"));
+        let file = read_svg(&room.read("out.svg"), 0.0025).unwrap();
+        let found = tiling(&file.region).unwrap();
+        assert!((found.pitch_mm - 30.0).abs().max_element() < 1e-3, "{exemplar}: {}", found.pitch_mm);
+        assert!(found.joins_across > 0 && found.joins_up > 0, "{exemplar}");
+        assert_eq!(report["components"], file.components, "{exemplar}");
+        assert_eq!(report["tiling"]["components"], found.components, "{exemplar}");
+        assert_eq!(report["tiling"]["holes"], found.holes, "{exemplar}");
+        assert_eq!(report["tiling"]["four_components"], found.four_components, "{exemplar}");
+        assert_eq!(report["tiling"]["four_holes"], found.four_holes, "{exemplar}");
+        assert_eq!((found.components == 1, file.components == 1), (is_one, is_one), "{exemplar}");
+    }
+}
+
+#[test]
+fn holes_are_as_many_as_are_asked_for() {
+    let room = Room::with(&["vine.svg"]);
+    let report =
+        rect(&room, "vine.svg --size 40x30mm --width 10mm --components 1 --holes 4 --memory-limit 256MB");
+    let found = read_svg(&room.read("out.svg"), 0.0025).unwrap();
+    assert_eq!((found.components, found.holes), (1, 4));
+    assert_eq!(
+        (&report["components"], &report["holes"], &report["genus"]),
+        (&1.into(), &4.into(), &4.into())
+    );
+    room.succeeds("verify out.stl --components 1 --holes 4");
+}
+
+#[test]
+fn bridges_join_what_the_rows_do_not() {
+    let room = Room::with(&["leaves.svg"]);
+    let report = rect(&room, "leaves.svg --size 30x20mm --width 10mm --components 1 --bridge 1mm");
+    assert_eq!(read_svg(&room.read("out.svg"), 0.0025).unwrap().components, 1);
+    let struts = report["bridges"]["struts"].as_u64().unwrap();
+    let listed = report["bridges"]["bridges"].as_array().unwrap();
+    assert!(struts > 0 && listed.len() as u64 >= struts);
+    assert!(listed.iter().all(|bridge| bridge["width_mm"].as_f64().unwrap() >= 1.0 - 1e-9));
+    room.succeeds("verify out.stl --components 1");
+    // The certificate knows them, and the rectangle is not proven without one.
+    room.succeeds("verify --certificate out.json out.svg");
+    let mut report = report;
+    report["certificate"]["bridges"].as_array_mut().unwrap().pop();
+    room.write("fewer.json", &report.to_string());
+    assert_eq!(room.run("verify --certificate fewer.json out.svg").code, 4);
+}
+
+#[test]
+fn certificates_of_rectangles_replay_on_their_own_files() {
+    let room = Room::with(&["vine.svg"]);
+    let report = rect(&room, "vine.svg --size 40x30mm --width 10mm --components 1");
+    for file in ["out.svg", "out.stl"] {
+        let said = room.succeeds(&format!("verify --certificate out.json {file}")).stdout;
+        assert!(String::from_utf8(said).unwrap().contains("certificate holds: "), "{file}");
+    }
+    // χ of the rectangle after one row.
+    let mut tampered = report.clone();
+    let euler = &mut tampered["certificate"]["steps"]["euler"][9];
+    *euler = (euler.as_i64().unwrap() + 1).into();
+    room.write("tampered.json", &tampered.to_string());
+    let refuted = room.run("verify --certificate tampered.json out.svg");
+    assert!(refuted.code == 4 && refuted.stderr.contains("join 9"), "{}", refuted.stderr);
+    // Another rectangle is another file.
+    room.succeeds("rect vine.svg --size 40x30mm --width 10mm --components 1 --seed 3 -o other.svg");
+    assert_eq!(room.run("verify --certificate out.json other.svg").code, 4);
+}
+
+#[test]
 fn what_cannot_be_is_refused_by_its_name() {
     let room = Room::with(&["vine.svg", "leaves.svg", "meander.svg"]);
     let before = room.contents();

@@ -46,26 +46,25 @@ const NARROWEST_BEAM: usize = 30;
 
 /// The cheapest run, or ring, that `automaton` accepts.
 pub(super) fn cheapest(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
-    let families = families(problem, automaton.goal().closed_pattern);
-    let threshold = families.iter().map(Family::estimate).min().unwrap_or(NEVER);
-    let short = short(problem, &families);
-    let search = Cheapest {
-        problem,
-        families,
-        threshold,
-        floor: threshold,
-        best: None,
-        by_drift: false,
-        short,
-        level: if automaton.goal().is_free() { Level::Topology } else { Level::Pieces },
-        labels: 0,
-        effort: 0,
-        effort_before: 0,
-        last: 0,
-    };
+    let search = Cheapest::new(problem, automaton);
     if problem.variety.is_some() {
         return search.varied(automaton);
     }
+    search.solve(automaton)
+}
+
+/// The same from a standing that no small problem comes to: the level, whether drifts are told apart, the effort after
+/// which more is learned, and what `force` makes of each family before the first walk.
+#[cfg(test)]
+pub(super) fn cheapest_from(
+    problem: &Problem<'_>,
+    automaton: &mut Automaton<'_>,
+    (level, by_drift, short): (Level, bool, usize),
+    mut force: impl FnMut(&mut Family, &mut Automaton<'_>),
+) -> Result<Solution, Unsolved> {
+    let mut search = Cheapest { level, by_drift, short, ..Cheapest::new(problem, automaton) };
+    search.families.iter_mut().for_each(|family| force(family, automaton));
+    search.catch_up(automaton);
     search.solve(automaton)
 }
 
@@ -114,7 +113,27 @@ struct Round {
     is_cut_short: bool,
 }
 
-impl Cheapest<'_> {
+impl<'p> Cheapest<'p> {
+    fn new(problem: &'p Problem<'p>, automaton: &Automaton<'_>) -> Self {
+        let families = families(problem, automaton.goal().closed_pattern);
+        let threshold = families.iter().map(Family::estimate).min().unwrap_or(NEVER);
+        let short = short(problem, &families);
+        Self {
+            problem,
+            families,
+            threshold,
+            floor: threshold,
+            best: None,
+            by_drift: false,
+            short,
+            level: if automaton.goal().is_free() { Level::Topology } else { Level::Pieces },
+            labels: 0,
+            effort: 0,
+            effort_before: 0,
+            last: 0,
+        }
+    }
+
     fn solve(mut self, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
         // Walks in a row that were too long.
         let mut leaps = 0;

@@ -18,7 +18,7 @@ use super::table::NEVER;
 use crate::topology::{Automaton, Descriptor, Goal, Shape, StateId};
 
 /// The portals of classes that are told from the rest, at most.
-const CLASS_SIZES: [usize; 4] = [1, 2, 4, 64];
+pub(super) const CLASS_SIZES: [usize; 4] = [1, 2, 4, 64];
 /// By so much the nodes grow from each of them to the next, about.
 const GROWTH: usize = 8;
 
@@ -145,6 +145,19 @@ impl Classes {
             }
         }
         best
+    }
+
+    /// The estimate that tells apart classes of so many portals, whatever it says.
+    #[cfg(test)]
+    pub(super) fn of_size(
+        problem: &Problem<'_>,
+        goal: Goal,
+        scope: &Scope,
+        limit: usize,
+        most_portals: usize,
+    ) -> Option<Self> {
+        let names = Names { most_portals, ..Names::default() };
+        goal.is_one_component().then(|| Self::explored(problem, goal, scope, limit, names)).flatten()
     }
 
     /// The estimate with these classes; `None` when it would be too large.

@@ -64,6 +64,12 @@ pub(super) struct Estimates {
 }
 
 impl Estimates {
+    /// With classes where all pairs of piece and state would be few enough.
+    #[cfg(test)]
+    pub(super) fn of_classes(classes: Classes) -> Self {
+        Self { classes: Some(classes), ..Self::default() }
+    }
+
     /// Makes the estimates that know topology, as far as they are small or, when they are to be `fine`, as far as they
     /// are affordable.
     pub(super) fn learn_topology(

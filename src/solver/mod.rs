@@ -14,6 +14,8 @@
 
 mod best;
 mod big;
+#[cfg(test)]
+mod bounds_tests;
 mod census;
 mod cheapest;
 mod classes;
@@ -23,6 +25,8 @@ mod counts;
 mod estimates;
 mod explain;
 mod family;
+#[cfg(test)]
+mod forced_tests;
 mod graph;
 mod labels;
 mod lengths;
@@ -33,6 +37,8 @@ mod problem;
 mod random;
 mod reach;
 mod recurrence;
+#[cfg(test)]
+mod sample_problems;
 mod table;
 mod variety;
 
