@@ -9,6 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use proptest::prelude::*;
 
 use super::classes::{CLASS_SIZES, Classes};
+use super::connected::Connected;
 use super::connectivity::{Connectivity, Counts};
 use super::counts::{Caps, counts, ranges};
 use super::estimates::{Estimates, Level};
@@ -211,6 +212,20 @@ impl<'a> Case<'a> {
         Ok(())
     }
 
+    /// The estimates that give components and holes a price, before and after they know that of the rise.
+    fn check_connected(&self, automaton: &Automaton<'_>, scope: &Scope) -> Result<(), TestCaseError> {
+        let Self { problem, goal, .. } = *self;
+        let labels = self.labels(scope);
+        let mut states = Automaton::new(problem.descriptors, goal, problem.shape);
+        if let Some(connected) = Connected::new(problem, goal, scope) {
+            let mut estimates = Estimates::of_connected(connected);
+            self.check_estimates("counts at a price", automaton, &labels, false, &mut estimates)?;
+            estimates.learn_prices(problem, &mut states, scope);
+            self.check_estimates("counts and rise at a price", automaton, &labels, false, &mut estimates)?;
+        }
+        Ok(())
+    }
+
     /// These classes, as they learn of the states that are met, before or after they know prices, and of the drift.
     fn check_grown(
         &self,
@@ -379,6 +394,7 @@ fn no_estimate_says_more_than_completing_a_run_costs() {
             }
             for scope in scopes(&problem, goal.closed_pattern) {
                 case.check_classes(&automaton, &scope)?;
+                case.check_connected(&automaton, &scope)?;
             }
         }
         Ok(())

@@ -70,6 +70,12 @@ impl Estimates {
         Self { classes: Some(classes), ..Self::default() }
     }
 
+    /// With prices on what is counted where all pairs of piece and state would be few enough.
+    #[cfg(test)]
+    pub(super) fn of_connected(connected: Connected) -> Self {
+        Self { connected: Some(connected), ..Self::default() }
+    }
+
     /// Makes the estimates that know topology, as far as they are small or, when they are to be `fine`, as far as they
     /// are affordable.
     pub(super) fn learn_topology(
