@@ -87,7 +87,7 @@ impl Band {
                 clock.time(Stage::Bridge, || band.lay_bridges(width_mm, inside))?;
                 band.report.made.times.clone_from(&clock.times);
             }
-            band.report.log10_sequences = runs.ln_sequences.map(|ln| ln / std::f64::consts::LN_10);
+            band.report.tell_number(runs.sequences);
             band.report.drawn_exactly = runs.is_exact;
             bands.push(band);
         }

@@ -7,8 +7,8 @@ use super::cut::Cut;
 use super::part::Part;
 use super::plan::Plan;
 use super::report::{
-    BandReport, DroppedCutReport, FallbackReport, InputReport, MadeReport, SeamReport, StageTime,
-    StitchReport,
+    BandReport, DroppedCutReport, FallbackReport, InputReport, MadeReport, NOT_COUNTED, SeamReport,
+    StageTime, StitchReport,
 };
 use crate::domain::BandMap;
 use crate::fit::{Outline, Seam, Sides};
@@ -124,6 +124,9 @@ pub(super) fn describe(
         },
         drawn_exactly: None,
         log10_sequences: None,
+        log10_sequences_at_least: None,
+        log10_sequences_at_most: None,
+        sequences: NOT_COUNTED,
         longest_repeat: longest_repeat(&plan.sequence),
         evenness: evenness(&plan.sequence, cut.catalogue.pieces().len()),
         wanted_components: options.goal.components.map(Wanted::ends),

@@ -9,6 +9,7 @@ use super::plan::{Plan, PlanError, PlanOptions, first_fit};
 use super::refusal;
 use super::stage::{Clock, Stage};
 use crate::domain::BandMap;
+use crate::solver::Tally;
 use crate::topology::{Shape, Topology};
 
 /// The memory of a search for what bridges could do, in bytes, when they were not asked for.
@@ -21,7 +22,7 @@ pub(super) struct Runs {
     /// The width of bridges, when the sequences do not meet the goal by themselves.
     pub(super) bridge_mm: Option<f64>,
     /// As in [`Chosen`].
-    pub(super) ln_sequences: Option<f64>,
+    pub(super) sequences: Option<Tally>,
     /// As in [`Chosen`].
     pub(super) is_exact: Option<bool>,
 }
@@ -62,9 +63,9 @@ pub(super) fn plan_runs(
 ) -> Result<Runs, JobError> {
     let options = plan_options(job, cut, map);
     let error = match strictly(&options, job.options.choice, job.options.counted, cut, clock) {
-        Ok(Chosen { plans, ln_sequences, is_exact }) => {
+        Ok(Chosen { plans, sequences, is_exact }) => {
             let plans = plans.into_iter().map(|plan| with_topology(cut, &options, plan)).collect();
-            return Ok(Runs { plans, bridge_mm: None, ln_sequences, is_exact });
+            return Ok(Runs { plans, bridge_mm: None, sequences, is_exact });
         }
         Err(error) => error,
     };
@@ -77,7 +78,7 @@ pub(super) fn plan_runs(
         if let Some(plan) = clock.time(Stage::Solve, relaxed) {
             let run = with_topology(cut, &options, plan);
             if bridge_mm.is_some() {
-                return Ok(Runs { plans: vec![run], bridge_mm, ln_sequences: None, is_exact: None });
+                return Ok(Runs { plans: vec![run], bridge_mm, sequences: None, is_exact: None });
             }
             hint = bridging::hint(options.goal, run.1);
         }

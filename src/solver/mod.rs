@@ -33,7 +33,9 @@ mod problem;
 mod random;
 mod reach;
 mod recurrence;
+mod rows;
 mod table;
+mod tally;
 mod variety;
 
 pub use best::{best, canonical};
@@ -41,6 +43,7 @@ pub use census::Census;
 pub use explain::{Refusal, explain};
 pub use problem::{Cost, Problem, Solution, Step, Unsolved};
 pub use random::Random;
+pub use tally::{Tally, tally};
 pub use variety::{Variety, autocorrelation, evenness, longest_repeat};
 
 use crate::topology::{Automaton, Goal};
