@@ -109,6 +109,8 @@ pub(super) fn describe(
             squeeze.position_mm[0], squeeze.position_mm[1], squeeze.reach_mm, squeeze.squeezed_to_mm
         ));
     }
+    // A mirrored piece is a use of the piece.
+    let origins: Vec<usize> = plan.sequence.iter().map(|&p| cut.catalogue.origin(p).index).collect();
     BandReport {
         schema_version: 1,
         generator: concat!("Openwork ", env!("CARGO_PKG_VERSION")),
@@ -128,7 +130,7 @@ pub(super) fn describe(
         log10_sequences_at_most: None,
         sequences: NOT_COUNTED,
         longest_repeat: longest_repeat(&plan.sequence),
-        evenness: evenness(&plan.sequence, cut.catalogue.pieces().len()),
+        evenness: evenness(&origins, cut.catalogue.originals()),
         wanted_components: options.goal.components.map(Wanted::ends),
         wanted_holes: options.goal.holes.map(Wanted::ends),
         wanted_closed_pattern: options.goal.closed_pattern,
@@ -158,7 +160,7 @@ pub(super) fn describe(
         cost: plan.cost,
         optimal: plan.gap.map(|gap| gap == 0.0),
         cost_gap: plan.gap,
-        autocorrelation: job.variety.map(|_| autocorrelation(&plan.sequence)),
+        autocorrelation: job.variety.map(|_| autocorrelation(&origins)),
         successors: cut.weights.successors,
         epsilon: plan.epsilon,
         length_error_mm: length_mm / outline.stretch - length_mm,

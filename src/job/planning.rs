@@ -94,7 +94,7 @@ fn plan_options(job: &BandJob, cut: &Cut, map: &BandMap) -> PlanOptions {
         goal: job.options.goal,
         weights: job.options.weights,
         seed: job.options.seed,
-        variety: job.variety,
+        variety: job.variety.map(|variety| variety.with_mirrored(cut.catalogue.originals())),
         memory_limit: job.memory_limit,
     }
 }

@@ -102,9 +102,10 @@ pub struct BandReport {
     pub log10_sequences_at_most: Option<f64>,
     /// Which of the three it is, and why.
     pub sequences: &'static str,
-    /// The most pieces in a row that occur twice without overlapping.
+    /// The most pieces in a row that occur twice, shown the same way, without overlapping.
     pub longest_repeat: usize,
-    /// How evenly the exemplar's pieces are used: the entropy of their frequencies as a part of the greatest, 0 to 1.
+    /// How evenly the exemplar's pieces are used: the entropy of their frequencies as a part of the greatest, 0 to 1;
+    /// a mirrored piece counts as the piece.
     pub evenness: f64,
     /// The least and the greatest number of components that were asked for.
     pub wanted_components: Option<[u32; 2]>,
@@ -146,7 +147,8 @@ pub struct BandReport {
     pub optimal: Option<bool>,
     /// How much less another sequence could cost at most.
     pub cost_gap: Option<f64>,
-    /// The autocorrelation of the sequence (Zhou 2014 §3.7), when variety was asked for.
+    /// The autocorrelation of the sequence (Zhou 2014 §3.7), when variety was asked for; a mirrored piece counts as
+    /// the piece.
     pub autocorrelation: Option<f64>,
     /// How many successors of each piece were considered.
     pub successors: usize,

@@ -23,7 +23,7 @@ use crate::topology::{Automaton, Goal, Shape, StateId};
 /// Rows that are made before all grow by the same factor, at least.
 const FEWEST_ROWS: usize = 64;
 /// The part of the effort that each of the bounds may take where counting would take too much.
-const PART_FOR_BOUNDS: usize = 100;
+const PART_FOR_BOUNDS: usize = 200;
 /// Bytes of rows at which sequences are not counted.
 const MOST_BYTES: usize = 128 << 20;
 /// Explored pairs that a join to another one is compared with.
