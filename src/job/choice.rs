@@ -31,7 +31,7 @@ pub enum Choice {
 /// thirty pieces.
 pub const DEFAULT_TEMPERATURE: f64 = 0.16;
 /// The work of counting sequences beside the cheapest, so that a report takes no longer than a part of a second more.
-const COUNTING_EFFORT: usize = 8_000_000;
+const COUNTING_EFFORT: usize = 4_000_000;
 /// The same beside many sequences: a second.
 const LONG_COUNTING_EFFORT: usize = 20_000_000;
 /// Additions at which sequences are not drawn exactly: a second or two.

@@ -23,9 +23,9 @@ use crate::topology::{Automaton, Goal, Shape, StateId};
 /// Rows that are made before all grow by the same factor, at least.
 const FEWEST_ROWS: usize = 64;
 /// The part of the effort that each of the bounds may take where counting would take too much.
-const PART_FOR_BOUNDS: usize = 200;
+const PART_FOR_BOUNDS: usize = 100;
 /// Bytes of rows at which sequences are not counted.
-const MOST_BYTES: usize = 128 << 20;
+const MOST_BYTES: usize = 64 << 20;
 /// Explored pairs that a join to another one is compared with.
 const COMPARED: usize = 48;
 /// Logarithms that are nearer to each other are of the same number.
@@ -172,7 +172,7 @@ fn between(
             pairs.links(problem, is_stop, |join, known| known.or_else(|| below(join.0, join.1))).pruned();
         if links.bytes(problem.drift_limit) <= MOST_BYTES {
             let starts = [(start, problem.widths[first])];
-            least = links.count(&runs(problem, &starts), &mut (2 * effort)).least;
+            least = links.count(&runs(problem, &starts), &mut (10 * effort)).least;
         }
     }
     Bounds { least, most }
