@@ -312,3 +312,71 @@ fn ln_powers(factor: f64, first: u32, last: u32) -> f64 {
     let sum = if ratio > -1e-12 { count } else { (count * ratio).exp_m1() / ratio.exp_m1() };
     f64::from(greatest) * factor + sum.ln()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn graph(joins: &[Vec<(u32, u32, i32)>]) -> Links {
+        let link = |&(to, width, rise): &(u32, u32, i32)| Link { to, width, rise };
+        let links = joins.iter().map(|joins| joins.iter().map(link).collect()).collect();
+        Links { links, stops: (0..joins.len()).map(|node| node == 2).collect() }
+    }
+
+    /// The same by its definition, in whole numbers.
+    fn defined(joins: &[Vec<(u32, u32, i32)>], window: (u32, u32), limit: i32) -> u128 {
+        let lanes = (2 * limit + 1) as usize;
+        let mut rows = vec![vec![vec![0u128; lanes]; joins.len()]; window.1 as usize + 1];
+        for length in (1..=window.1).rev() {
+            for (node, joins) in joins.iter().enumerate() {
+                for drift in -limit..=limit {
+                    let stop = u128::from(node == 2 && length >= window.0);
+                    let rests =
+                        joins.iter().filter(|join| (drift + join.2).abs() <= limit).filter_map(|join| {
+                            let row = rows.get((length + join.1) as usize)?;
+                            Some(row[join.0 as usize][(drift + join.2 + limit) as usize])
+                        });
+                    rows[length as usize][node][(drift + limit) as usize] = stop + rests.sum::<u128>();
+                }
+            }
+        }
+        rows[1][0][limit as usize]
+    }
+
+    proptest! {
+        // Enough patience gives the number, and any gives bounds of it.
+        #[test]
+        fn runs_are_counted_as_defined(
+            joins in prop::collection::vec(prop::collection::vec((0u32..4, 1u32..5, -2i32..=2), 0..4), 4),
+            end in 1u32..90,
+            slack in 0u32..9,
+            limit in 0i32..5,
+            patience in 0usize..3_000,
+        ) {
+            let start = end.saturating_sub(slack).max(1);
+            let number = defined(&joins, (start, end), limit) as f64;
+            let runs = Runs { starts: &[(0, 1)], window: start..=end, limit };
+            let graph = graph(&joins).pruned();
+            let Bounds { least, most } = graph.count(&runs, &mut usize::MAX.clone());
+            prop_assert!(least <= number.ln() + 1e-9 && number.ln() <= most + 1e-9);
+            prop_assert!(least == most || most - least < 1e-3, "{least} to {most}");
+            let Bounds { least, most } = graph.count(&runs, &mut patience.clone());
+            prop_assert!(least <= number.ln() + 1e-9 && number.ln() <= most + 1e-9, "{least} to {most}");
+        }
+    }
+
+    // Widths of 1 and 2 make Fibonacci numbers, which grow by the golden ratio.
+    #[test]
+    fn rows_that_grow_by_the_same_factor_are_not_made() {
+        let graph = graph(&[vec![(2, 1, 0)], vec![], vec![(2, 1, 0), (2, 2, 0)]]);
+        let runs = Runs { starts: &[(0, 1)], window: 1_000_000..=1_000_000, limit: 32 };
+        let mut patience = 1_000;
+        let found = graph.count(&runs, &mut patience);
+        let golden = (1.0 + 5f64.sqrt()) / 2.0;
+        // F(n) = φ^n / √5, and after the first join 999 998 bins are left.
+        let wanted = 999_999.0 * golden.ln() - 5f64.sqrt().ln();
+        assert!((found.least - wanted).abs() < 1e-3 && (found.most - wanted).abs() < 1e-3, "{found:?}");
+        assert!(patience > 500);
+    }
+}

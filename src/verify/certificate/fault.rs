@@ -42,6 +42,8 @@ pub struct CertificateFault {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(tag = "part", rename_all = "snake_case")]
 pub enum CertificatePlace {
+    /// The exemplar, if it was given.
+    Exemplar,
     /// The descriptor of a piece.
     Piece {
         /// Its number.
@@ -80,6 +82,7 @@ pub enum CertificatePlace {
 impl fmt::Display for CertificatePlace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Exemplar => f.write_str("the exemplar"),
             Self::Piece { piece } => write!(f, "piece {piece}"),
             Self::Join { position, from: Some(from), to } => {
                 write!(f, "join {position}, of piece {from} to piece {to}")
@@ -118,17 +121,29 @@ pub struct CertificateReport {
     pub closed_pattern: bool,
     /// SHA-256 of the file.
     pub sha256: String,
+    /// Whether its pieces were compared with the exemplar's.
+    pub exemplar_compared: bool,
     /// Every place where it does not hold.
     pub faults: Vec<CertificateFault>,
+}
+
+impl CertificateReport {
+    /// Adds where the exemplar is not as the certificate says.
+    pub fn add_exemplar(&mut self, faults: Vec<CertificateFault>) {
+        self.exemplar_compared = true;
+        self.holds &= faults.is_empty();
+        self.faults.extend(faults);
+    }
 }
 
 impl fmt::Display for CertificateReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.holds {
             let closed = if self.closed_pattern { ", closed all the way round" } else { "" };
+            let exemplar = if self.exemplar_compared { "; its pieces are those of the exemplar" } else { "" };
             return write!(
                 f,
-                "certificate holds: {} joins of {} different pieces and {} bridge(s) give {} component(s) and {} hole(s){closed}, as counted on this file (SHA-256 {})",
+                "certificate holds: {} joins of {} different pieces and {} bridge(s) give {} component(s) and {} hole(s){closed}, as counted on this file (SHA-256 {}){exemplar}",
                 self.joins, self.different_pieces, self.bridges, self.components, self.holes, self.sha256
             );
         }

@@ -5,7 +5,8 @@
 //! recount on the file, its SHA-256, and last the digest of the certificate: a change that no step feels, as one
 //! piece for another with the same descriptor, is found by that.
 //!
-//! Excluded: whether the descriptors are those of the exemplar. The counts of the file do not rest on it.
+//! Excluded: whether the descriptors are those of the exemplar, on which the counts of the file do not rest. Who has the
+//! exemplar can add that ([`CertificateReport::add_exemplar`]).
 
 mod claims;
 mod fault;
@@ -73,6 +74,7 @@ pub fn replay_certificate(
         holes: made.components - made.euler,
         closed_pattern: made.winds,
         sha256,
+        exemplar_compared: false,
         faults,
     })
 }
