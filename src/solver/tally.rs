@@ -79,7 +79,7 @@ fn exactly(
         if !pairs.is_complete() {
             return None;
         }
-        for (starts, stop) in pairs.parts(problem, automaton, scope) {
+        for Part { starts, stop } in pairs.parts(problem, automaton, scope) {
             let is_stop = |pair: &Pair| stop[pair.piece as usize].is_some() && automaton.accepts(pair.state);
             let links = pairs.links(problem, is_stop, |_, known| known).pruned();
             if links.bytes(problem.drift_limit) > MOST_BYTES {
@@ -209,6 +209,14 @@ struct Pair {
     scope: u32,
 }
 
+/// What is counted together.
+struct Part {
+    /// The first pairs, each with its length in bins.
+    starts: Vec<(u32, u32)>,
+    /// What stopping after each piece costs, where it may stop.
+    stop: Vec<Option<Cost>>,
+}
+
 /// Pairs of piece and state that runs reach.
 struct Pairs {
     nodes: Vec<Pair>,
@@ -271,14 +279,8 @@ impl Pairs {
         })
     }
 
-    /// What is counted together: all runs of a scope, or its rings by their first piece; with what stopping after each
-    /// piece costs.
-    fn parts(
-        &self,
-        problem: &Problem<'_>,
-        automaton: &mut Automaton<'_>,
-        scope: &Scope,
-    ) -> Vec<(Vec<(u32, u32)>, Vec<Option<Cost>>)> {
+    /// All runs of a scope, or its rings by their first piece.
+    fn parts(&self, problem: &Problem<'_>, automaton: &mut Automaton<'_>, scope: &Scope) -> Vec<Part> {
         let start = |&(piece, _): &(usize, Cost)| {
             let node = self.start(automaton, piece)?;
             Some((node, problem.widths[piece]))
@@ -286,10 +288,10 @@ impl Pairs {
         let starts: Vec<(u32, u32)> = scope.starts.iter().filter_map(start).collect();
         let ring = |start: (u32, u32)| {
             let first = self.nodes[start.0 as usize].piece as usize;
-            (vec![start], closing_costs(problem, &[first], &scope.allowed))
+            Part { starts: vec![start], stop: closing_costs(problem, &[first], &scope.allowed) }
         };
         match problem.shape {
-            Shape::Open => vec![(starts, scope.stop.clone())],
+            Shape::Open => vec![Part { starts, stop: scope.stop.clone() }],
             Shape::Ring => starts.into_iter().map(ring).collect(),
         }
     }
