@@ -182,6 +182,48 @@ fn every_tampered_number_is_found_where_it_stands() {
 }
 
 #[test]
+fn the_pieces_are_those_of_the_exemplar() {
+    let room = bands();
+    for (report, file) in [("ring.json", "ring.svg"), ("line.json", "line.svg")] {
+        let said = room.succeeds(&format!("verify {file} --certificate {report} --exemplar vine.svg")).stdout;
+        let said = String::from_utf8(said).unwrap();
+        assert!(said.contains("its pieces are those of the exemplar"), "{said}");
+    }
+    let verify = "verify ring.svg --certificate forged.json --exemplar vine.svg";
+    let forge = |change: &dyn Fn(&mut Value)| {
+        let mut report = room.json("ring.json");
+        change(&mut report["certificate"]);
+        room.write("forged.json", &report.to_string());
+    };
+    // One descriptor, one place in the sequence, χ off by one, a count: each is told at its place.
+    forge(&|c| c["pieces"][2]["closed"] = json!(7));
+    let piece = room.json("ring.json")["certificate"]["pieces"][2]["piece"].to_string();
+    disproves(&room, verify, &[&format!("piece {piece}: the exemplar has closed components"), "says 7"]);
+    forge(&|c| {
+        let (a, b) = (c["sequence"][5].clone(), c["sequence"][6].clone());
+        (c["sequence"][5], c["sequence"][6]) = (b, a);
+    });
+    disproves(&room, verify, &["join 5, of piece", "the report: its sequence"]);
+    forge(&|c| c["steps"]["euler"][9] = json!(c["steps"]["euler"][9].as_i64().unwrap() - 1));
+    disproves(&room, verify, &["join 9, of piece", "Euler characteristic"]);
+    forge(&|c| c["result"]["components"] = json!(2));
+    disproves(&room, verify, &["the result: the steps add up to 1 component(s)"]);
+    // Another exemplar, and other cuts.
+    let strands = verify.replace("vine.svg", "strands.svg");
+    disproves(&room, &strands, &["the exemplar: its SHA-256 is"]);
+    forge(&|c| c["source"]["cuts"] = json!([1, 2, 3]));
+    disproves(&room, verify, &["the exemplar: "]);
+    forge(&|c| {
+        let cuts = c["source"]["cuts"].as_array_mut().unwrap();
+        cuts.reverse();
+    });
+    disproves(&room, verify, &["not from left to right"]);
+    forge(&|c| c["source"] = json!(null));
+    assert_eq!(room.run(verify).code, 2);
+    assert_eq!(room.run("verify ring.svg --exemplar vine.svg").code, 2);
+}
+
+#[test]
 fn bridges_change_the_counts_as_they_can() {
     let room = bands();
     let (report, many) = (room.json("many.json"), Drawing::of(&room, "many.svg"));

@@ -50,6 +50,26 @@ fn the_k_best_are_in_order_and_begin_with_the_optimum() {
 }
 
 #[test]
+fn a_mirrored_piece_repeats_the_piece() {
+    let room = Room::with(&["leaves.svg"]);
+    let band = "band leaves.svg --along line:240mm --width 20mm --components 1 --mirror --variety 0.5";
+    room.succeeds(&format!("{band} -o m.svg --report m.json"));
+    let report = room.json("m.json");
+    let originals = report["pieces_in_exemplar"].as_u64().unwrap();
+    let sequence: Vec<u64> =
+        report["sequence"].as_array().unwrap().iter().map(|piece| piece.as_u64().unwrap()).collect();
+    assert!(sequence.iter().any(|&piece| piece >= originals), "the band has mirrored pieces");
+    // Zhou 2014 §3.7 by its definition, with numbers in the exemplar.
+    let at = |shift: usize| -> f64 {
+        let pairs = sequence.iter().zip(&sequence[shift..]);
+        pairs.map(|(a, b)| (-2.0 * (a % originals).abs_diff(b % originals) as f64).exp()).sum()
+    };
+    let most = (1..sequence.len()).map(at).fold(0.0, f64::max);
+    let reported = report["autocorrelation"].as_f64().unwrap();
+    assert!((reported - most).abs() < 1e-9, "{reported} is not {most}");
+}
+
+#[test]
 fn ranges_hold_and_bridges_make_what_cannot_be_had() {
     let room = Room::with(&["vine.svg", "strands.svg"]);
     room.succeeds("band vine.svg --along line:120mm --components 1 --holes 2..4 -o r.svg --report r.json");

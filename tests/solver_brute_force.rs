@@ -9,7 +9,7 @@ use openwork::pieces::{Catalogue, CostWeights};
 use openwork::planar::{FillRule, Grid, GridPoint, Region, Tolerances};
 use openwork::reeb::{ReebGraph, Slicing, SlicingRule};
 use openwork::solver::{
-    Census, Nearest, Problem, Random, Refusal, Step, Unsolved, best, canonical, explain, solve,
+    Census, Nearest, Problem, Random, Refusal, Step, Tally, Unsolved, best, canonical, explain, solve, tally,
 };
 use openwork::topology::{Descriptor, Goal, Shape, Topology, Wanted};
 use proptest::prelude::*;
@@ -172,11 +172,34 @@ fn check(pieces: &Pieces, request: &Request) -> Result<bool, TestCaseError> {
 /// How many of the cheapest are listed.
 const LISTED: usize = 6;
 
+/// Work that sequences are counted for: enough, hardly any, and some in between.
+const EFFORTS: [usize; 5] = [usize::MAX / 2, 40_000, 8_000, 1_000, 0];
+
+/// That a number lies within the bounds that are told, and is told itself with enough effort.
+fn check_tally(tally: Tally, number: usize, is_counted: bool) -> Result<(), TestCaseError> {
+    let (ln, close) = ((number as f64).ln(), 1e-9);
+    prop_assert!(
+        tally.ln_at_least <= ln + close && ln <= tally.ln_at_most + close,
+        "{:?} of {}",
+        tally,
+        number
+    );
+    if let Some(counted) = tally.ln_counted() {
+        prop_assert!(counted == ln || (counted - ln).abs() < close, "{:?} of {}", tally, number);
+    }
+    prop_assert!(!is_counted || tally.ln_counted().is_some(), "{:?} of {}", tally, number);
+    Ok(())
+}
+
 /// That the number of sequences, the cheapest ones, and what is drawn at random are those of the enumeration.
 fn check_all(problem: &Problem<'_>, goal: Goal, admitted: Vec<&Made>) -> Result<(), TestCaseError> {
     let mut census =
         Census::new(problem, goal, f64::INFINITY, usize::MAX).expect("small cases have a census");
     prop_assert_eq!(census.ln_total().exp().round() as usize, admitted.len(), "{:?}", goal);
+    let known = admitted.first().map(|made| &made.sequence[..]);
+    for effort in EFFORTS {
+        check_tally(tally(problem, goal, known, effort), admitted.len(), effort == usize::MAX / 2)?;
+    }
     let drawn = census.draw(&mut Random::new(7));
     prop_assert_eq!(drawn.is_some(), !admitted.is_empty());
     if let Some(drawn) = drawn {

@@ -105,7 +105,9 @@ Examples:
   Whether copies of a tile join, and what the tiling has:
     openwork verify tile.svg --tiles
   Whether a report proves the counts of the file that was written with it:
-    openwork verify --certificate bracelet.json bracelet.svg";
+    openwork verify --certificate bracelet.json bracelet.svg
+  And whether the pieces that it adds up are those of the exemplar:
+    openwork verify --certificate bracelet.json --exemplar vine.svg bracelet.svg";
 
 #[derive(Debug, Args)]
 pub(super) struct BandArguments {
@@ -285,6 +287,9 @@ pub(super) struct VerifyArguments {
     /// The report that was written with the file: replay its certificate, step by step
     #[arg(long, value_name = "REPORT.json")]
     pub(super) certificate: Option<PathBuf>,
+    /// The exemplar of the report: cut its pieces out again and compare them with the certificate
+    #[arg(long, value_name = "EXEMPLAR.svg", requires = "certificate")]
+    pub(super) exemplar: Option<PathBuf>,
     /// It must be a tile: opposite sides match, so that copies join (SVG). Tells what the tiling has
     #[arg(long)]
     pub(super) tiles: bool,

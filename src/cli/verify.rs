@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use super::args::VerifyArguments;
 use super::run::{CliError, print, print_json, tolerances};
-use crate::job::JobError;
+use crate::job::{JobError, recut};
 use crate::verify::{self, CertificateReport, Counted, Expected, Tiling};
 
 pub(super) fn run(arguments: &VerifyArguments) -> Result<ExitCode, CliError> {
@@ -22,7 +22,17 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<ExitCode, CliError> {
         Some(path) => Some((path.as_path(), read(path)?)),
         None => None,
     };
-    let replayed = |counted| replay(certificate.as_ref(), &bytes, counted);
+    let recut = match (&certificate, &arguments.exemplar) {
+        (Some((_, report)), Some(exemplar)) => Some(recut(report, exemplar)?),
+        _ => None,
+    };
+    let replayed = |counted| {
+        let replayed = replay(certificate.as_ref(), &bytes, counted)?;
+        Ok::<_, CliError>(replayed.map(|mut replayed| {
+            recut.clone().into_iter().for_each(|faults| replayed.add_exemplar(faults));
+            replayed
+        }))
+    };
     let unjudged = |error| CliError::Unjudged { file: file.clone(), error };
     let extension = arguments.file.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
     let checked = match extension.as_str() {

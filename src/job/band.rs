@@ -122,7 +122,8 @@ impl Band {
                 is_fine_enough &= !matches!(mismatch, Mismatch::Components { .. } | Mismatch::Holes { .. });
             }
             band.report.made.times.clone_from(&clock.times);
-            band.report.log10_sequences = runs.ln_sequences.map(|ln| ln / std::f64::consts::LN_10);
+            band.report.tell_number(runs.sequences);
+            band.report.made.certificate.tell_source(job, &cut);
             band.report.drawn_exactly = runs.is_exact;
             bands.push(band);
         }

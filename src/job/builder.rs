@@ -245,7 +245,7 @@ impl BandBuilder {
                 wanted: "ask for --holes 1 or more, or leave one of the two out".to_owned(),
             });
         }
-        let variety = (self.beta > 0.0).then_some(Variety { beta: self.beta });
+        let variety = (self.beta > 0.0).then(|| Variety::new(self.beta));
         let memory_limit = self.memory_limit;
         Ok(BandJob { options: self, tolerances, variety, memory_limit })
     }

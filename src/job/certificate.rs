@@ -7,12 +7,15 @@
 //! code of its own. Runs are connected in few different ways, which are listed once, so that a certificate has a
 //! few small numbers for each piece of the band.
 //!
-//! Excluded: that the descriptors are those of the exemplar's geometry. What the files hold is counted on them.
+//! Where the exemplar was cut is in it too, so that its pieces can be made again ([`super::recut`]): a replay by itself
+//! does not tell whether the descriptors are those of the exemplar's geometry. What the files hold is counted on them.
 
 use rustc_hash::FxHashMap;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
+use super::builder::BandJob;
+use super::cut::Cut;
 use crate::fabricate::{Bridge, BridgeKind, Counts};
 use crate::pieces::Catalogue;
 use crate::topology::{Descriptor, Goal, Shape, Topology, Wanted};
@@ -29,6 +32,8 @@ pub struct Certificate {
     pub shape: &'static str,
     /// What was asked for.
     pub wanted: WantedCounts,
+    /// How the exemplar was cut; null when the pieces are not cut from a file, as the rows of a rectangle.
+    pub source: Option<Source>,
     /// The pieces that occur, by number.
     pub pieces: Vec<PieceDescriptor>,
     /// The pieces of the band in order, by number.
@@ -49,6 +54,21 @@ pub struct Certificate {
     pub files: Vec<FileDigest>,
     /// SHA-256 of all of the above as JSON without white space, keys in order.
     pub sha256: String,
+}
+
+/// What makes the pieces again. Numbers that are not whole are text, as their shortest decimal form.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Source {
+    /// SHA-256 of the exemplar's file, in hexadecimal.
+    pub sha256: String,
+    /// The height in millimetres that it was scaled to; null for its own.
+    pub height_mm: Option<String>,
+    /// The greatest distance in millimetres between a curve of the job and what stands for it.
+    pub chord_mm: String,
+    /// Pieces of the exemplar; n + i is piece i of n, mirrored.
+    pub pieces: usize,
+    /// Where it was cut, in steps of the grid that it is read on.
+    pub cuts: Vec<i64>,
 }
 
 /// Counts that were asked for: from the first to the second; null when free.
@@ -148,6 +168,17 @@ pub struct FileDigest {
 }
 
 impl Certificate {
+    /// Adds how the exemplar of `job` was cut.
+    pub(super) fn tell_source(&mut self, job: &BandJob, cut: &Cut) {
+        self.source = Some(Source {
+            sha256: cut.exemplar.sha256().to_owned(),
+            height_mm: job.options.width_mm.map(|mm| mm.to_string()),
+            chord_mm: job.tolerances.chord_mm().to_string(),
+            pieces: cut.catalogue.originals(),
+            cuts: cut.slicing.cuts.iter().map(|c| c.x).collect(),
+        });
+    }
+
     /// Adds what bridges change, and the counts with them.
     pub(super) fn add_bridges(&mut self, bridges: &[Bridge], counts: Counts, closed_pattern: bool) {
         for bridge in bridges {
@@ -203,6 +234,7 @@ impl Certificate {
                 holes: goal.holes.map(Wanted::ends),
                 closed_pattern: goal.closed_pattern,
             },
+            source: None,
             pieces: used.iter().map(|&piece| PieceDescriptor::new(piece, &descriptors[piece])).collect(),
             sequence: sequence.to_vec(),
             states,

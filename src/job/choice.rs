@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::plan::{Plan, PlanError, PlanOptions, finish, plan, problem_of};
 use crate::pieces::Catalogue;
-use crate::solver::{self, Census, Random, Solution, Unsolved, canonical};
+use crate::solver::{self, Census, Random, Solution, Tally, Unsolved, canonical};
 use crate::topology::Shape;
 
 /// Which sequences are taken.
@@ -30,10 +30,11 @@ pub enum Choice {
 /// needed then is about e⁻⁶ as likely as none, and with a dozen to choose from at each cut there is one in some
 /// thirty pieces.
 pub const DEFAULT_TEMPERATURE: f64 = 0.16;
-/// Additions at which sequences are not counted beside the cheapest, so that a report takes no longer than a part of
-/// a second more.
-const COUNTING_EFFORT: usize = 30_000_000;
-/// Additions at which sequences are not drawn exactly, nor counted: a second or two.
+/// The work of counting sequences beside the cheapest, so that a report takes no longer than a part of a second more.
+const COUNTING_EFFORT: usize = 4_000_000;
+/// The same beside many sequences: a second.
+const LONG_COUNTING_EFFORT: usize = 20_000_000;
+/// Additions at which sequences are not drawn exactly: a second or two.
 const DRAWING_EFFORT: usize = 150_000_000;
 /// How often a sequence is drawn again when it was drawn before.
 const REDRAWS: usize = 40;
@@ -43,9 +44,8 @@ const REDRAWS: usize = 40;
 pub struct Chosen {
     /// The sequences: by cost, or in the order in which they were drawn.
     pub plans: Vec<Plan>,
-    /// The natural logarithm of the number of sequences that meet the constraints within the accepted lengths, if
-    /// they could be counted. A ring counts once for each narrowest cut at which it can be opened.
-    pub ln_sequences: Option<f64>,
+    /// How many sequences meet the constraints within the accepted lengths, if that was asked for.
+    pub sequences: Option<Tally>,
     /// Whether random sequences were drawn from all that there are with their exact probabilities. Otherwise each is
     /// the cheapest when every jump costs a random part more.
     pub is_exact: Option<bool>,
@@ -63,9 +63,9 @@ pub fn choose(
 ) -> Result<Chosen, PlanError> {
     let cheapest = plan(catalogue, options)?;
     let problem = problem_of(catalogue, options, cheapest.epsilon);
-    let effort = if choice == Choice::Cheapest { COUNTING_EFFORT } else { DRAWING_EFFORT };
-    let count = || Census::new(&problem, options.goal, f64::INFINITY, effort).map(|census| census.ln_total());
-    let ln_sequences = if counted { count() } else { None };
+    let effort = if choice == Choice::Cheapest { COUNTING_EFFORT } else { LONG_COUNTING_EFFORT };
+    let count = || solver::tally(&problem, options.goal, Some(&cheapest.sequence), effort);
+    let sequences = counted.then(count);
     let epsilon = cheapest.epsilon;
     let to_plan = |solution: Solution| finish(catalogue, options, solution, epsilon);
     let (plans, is_exact) = match choice {
@@ -98,7 +98,7 @@ pub fn choose(
             (plans, Some(is_exact))
         }
     };
-    Ok(Chosen { plans, ln_sequences, is_exact })
+    Ok(Chosen { plans, sequences, is_exact })
 }
 
 /// Up to `count` different sequences.

@@ -52,13 +52,19 @@ impl Cut {
     }
 }
 
+/// How the exemplar is read for a job with this chord error.
+pub(super) fn read_options(chord_mm: f64, height_mm: Option<f64>) -> ReadOptions {
+    ReadOptions { chord_mm: chord_mm * READ_SHARE, target_height_mm: height_mm, limits: Limits::default() }
+}
+
+/// The ink that is cut: without parts and holes that the chord error cannot tell from nothing, and where those are.
+pub(super) fn cleaned(region: &Region, chord_mm: f64) -> (Region, Vec<DVec2>) {
+    region.without_specks(chord_mm.powi(2))
+}
+
 /// The exemplar at the size and the chord error of the job.
 pub(super) fn read_exemplar(job: &BandJob) -> Result<Exemplar, JobError> {
-    let options = ReadOptions {
-        chord_mm: job.tolerances.chord_mm() * READ_SHARE,
-        target_height_mm: job.options.width_mm,
-        limits: Limits::default(),
-    };
+    let options = read_options(job.tolerances.chord_mm(), job.options.width_mm);
     Ok(Exemplar::read(&job.options.exemplar, &options)?)
 }
 
@@ -70,8 +76,7 @@ pub(super) fn slice(job: &BandJob, exemplar: Exemplar) -> Result<Cut, JobError> 
 
 /// Cuts `region`, which is the ink of `exemplar` or was made from it.
 pub(super) fn slice_region(job: &BandJob, exemplar: Exemplar, region: &Region) -> Result<Cut, JobError> {
-    let speck_mm2 = job.tolerances.chord_mm().powi(2);
-    let (region, specks) = region.without_specks(speck_mm2);
+    let (region, specks) = cleaned(region, job.tolerances.chord_mm());
     let region = &region;
     if region.is_empty() {
         return Err(JobError::Option {

@@ -7,8 +7,8 @@ use super::cut::Cut;
 use super::part::Part;
 use super::plan::Plan;
 use super::report::{
-    BandReport, DroppedCutReport, FallbackReport, InputReport, MadeReport, SeamReport, StageTime,
-    StitchReport,
+    BandReport, DroppedCutReport, FallbackReport, InputReport, MadeReport, NOT_COUNTED, SeamReport,
+    StageTime, StitchReport,
 };
 use crate::domain::BandMap;
 use crate::fit::{Outline, Seam, Sides};
@@ -109,6 +109,8 @@ pub(super) fn describe(
             squeeze.position_mm[0], squeeze.position_mm[1], squeeze.reach_mm, squeeze.squeezed_to_mm
         ));
     }
+    // A mirrored piece is a use of the piece.
+    let origins: Vec<usize> = plan.sequence.iter().map(|&p| cut.catalogue.origin(p).index).collect();
     BandReport {
         schema_version: 1,
         generator: concat!("Openwork ", env!("CARGO_PKG_VERSION")),
@@ -124,8 +126,11 @@ pub(super) fn describe(
         },
         drawn_exactly: None,
         log10_sequences: None,
+        log10_sequences_at_least: None,
+        log10_sequences_at_most: None,
+        sequences: NOT_COUNTED,
         longest_repeat: longest_repeat(&plan.sequence),
-        evenness: evenness(&plan.sequence, cut.catalogue.pieces().len()),
+        evenness: evenness(&origins, cut.catalogue.originals()),
         wanted_components: options.goal.components.map(Wanted::ends),
         wanted_holes: options.goal.holes.map(Wanted::ends),
         wanted_closed_pattern: options.goal.closed_pattern,
@@ -155,7 +160,7 @@ pub(super) fn describe(
         cost: plan.cost,
         optimal: plan.gap.map(|gap| gap == 0.0),
         cost_gap: plan.gap,
-        autocorrelation: job.variety.map(|_| autocorrelation(&plan.sequence)),
+        autocorrelation: job.variety.map(|_| autocorrelation(&origins)),
         successors: cut.weights.successors,
         epsilon: plan.epsilon,
         length_error_mm: length_mm / outline.stretch - length_mm,

@@ -43,6 +43,7 @@ mod rect_rows;
 mod rect_search;
 mod rect_strip;
 mod rect_tile;
+mod recut;
 mod refusal;
 mod report;
 mod stage;
@@ -52,7 +53,7 @@ pub use band::Band;
 pub use bridging::BridgesReport;
 pub use builder::{BandBuilder, BandJob, SlicingChoice};
 pub use certificate::{
-    BridgeStep, Certificate, Closing, Connections, FileDigest, PieceDescriptor, ResultCounts, Steps,
+    BridgeStep, Certificate, Closing, Connections, FileDigest, PieceDescriptor, ResultCounts, Source, Steps,
     WantedCounts,
 };
 pub use choice::{Choice, Chosen, DEFAULT_TEMPERATURE, choose};
@@ -64,6 +65,7 @@ pub use plan::{DEFAULT_MEMORY_LIMIT, Plan, PlanError, PlanOptions, plan};
 pub use rect::Rect;
 pub use rect_builder::{RectBuilder, RectJob};
 pub use rect_report::{Attempt, DirectionReport, RectReport};
+pub use recut::recut;
 pub use report::{
     BandReport, DroppedCutReport, FallbackReport, InputReport, MadeReport, SeamReport, StageTime,
     StitchReport,

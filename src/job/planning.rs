@@ -9,6 +9,7 @@ use super::plan::{Plan, PlanError, PlanOptions, first_fit};
 use super::refusal;
 use super::stage::{Clock, Stage};
 use crate::domain::BandMap;
+use crate::solver::Tally;
 use crate::topology::{Shape, Topology};
 
 /// The memory of a search for what bridges could do, in bytes, when they were not asked for.
@@ -25,7 +26,7 @@ pub(super) struct Runs {
     /// The width of bridges, when the sequences do not meet the goal by themselves.
     pub(super) bridge_mm: Option<f64>,
     /// As in [`Chosen`].
-    pub(super) ln_sequences: Option<f64>,
+    pub(super) sequences: Option<Tally>,
     /// As in [`Chosen`].
     pub(super) is_exact: Option<bool>,
 }
@@ -69,9 +70,9 @@ pub(super) fn plan_runs(
     let part = if job.options.bridge_mm.is_some() { STRICT_PART } else { 1 };
     let strict = PlanOptions { memory_limit: options.memory_limit / part, ..options };
     let error = match strictly(&strict, job.options.choice, job.options.counted, cut, clock) {
-        Ok(Chosen { plans, ln_sequences, is_exact }) => {
+        Ok(Chosen { plans, sequences, is_exact }) => {
             let plans = plans.into_iter().map(|plan| with_topology(cut, &options, plan)).collect();
-            return Ok(Runs { plans, bridge_mm: None, ln_sequences, is_exact });
+            return Ok(Runs { plans, bridge_mm: None, sequences, is_exact });
         }
         Err(error) => error,
     };
@@ -84,7 +85,7 @@ pub(super) fn plan_runs(
         if let Some(plan) = clock.time(Stage::Solve, relaxed) {
             let run = with_topology(cut, &options, plan);
             if bridge_mm.is_some() {
-                return Ok(Runs { plans: vec![run], bridge_mm, ln_sequences: None, is_exact: None });
+                return Ok(Runs { plans: vec![run], bridge_mm, sequences: None, is_exact: None });
             }
             hint = bridging::hint(options.goal, run.1);
         }
@@ -100,7 +101,7 @@ fn plan_options(job: &BandJob, cut: &Cut, map: &BandMap) -> PlanOptions {
         goal: job.options.goal,
         weights: job.options.weights,
         seed: job.options.seed,
-        variety: job.variety,
+        variety: job.variety.map(|variety| variety.with_mirrored(cut.catalogue.originals())),
         memory_limit: job.memory_limit,
     }
 }

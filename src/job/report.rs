@@ -6,6 +6,7 @@ use super::bridging::BridgesReport;
 use super::certificate::Certificate;
 use super::json;
 use crate::domain::Squeeze;
+use crate::solver::Tally;
 use crate::verify::Narrowest;
 
 /// An input file.
@@ -70,6 +71,10 @@ pub struct StageTime {
     pub milliseconds: f64,
 }
 
+/// Why a report has no number of sequences.
+pub(super) const NOT_COUNTED: &str =
+    "not counted: bands are counted whose sequences meet what was asked for without bridges";
+
 /// What was asked for, what was made, and what was found in the files. Lengths are millimetres.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BandReport {
@@ -88,12 +93,19 @@ pub struct BandReport {
     /// With a seed: whether the sequence was drawn from all that meet the constraints with its exact probability;
     /// where they are too many, every jump costs a random part more instead.
     pub drawn_exactly: Option<bool>,
-    /// The decimal logarithm of the number of sequences that meet the constraints within the accepted lengths, if they
-    /// were counted.
+    /// The decimal logarithm of the number of sequences that meet the constraints within the accepted lengths, where
+    /// they were counted. A ring counts once for each narrowest cut at which it can be opened.
     pub log10_sequences: Option<f64>,
-    /// The most pieces in a row that occur twice without overlapping.
+    /// That of a number that is not greater; the same where they were counted.
+    pub log10_sequences_at_least: Option<f64>,
+    /// That of a number that is not less; the same where they were counted.
+    pub log10_sequences_at_most: Option<f64>,
+    /// Which of the three it is, and why.
+    pub sequences: &'static str,
+    /// The most pieces in a row that occur twice, shown the same way, without overlapping.
     pub longest_repeat: usize,
-    /// How evenly the exemplar's pieces are used: the entropy of their frequencies as a part of the greatest, 0 to 1.
+    /// How evenly the exemplar's pieces are used: the entropy of their frequencies as a part of the greatest, 0 to 1;
+    /// a mirrored piece counts as the piece.
     pub evenness: f64,
     /// The least and the greatest number of components that were asked for.
     pub wanted_components: Option<[u32; 2]>,
@@ -135,7 +147,8 @@ pub struct BandReport {
     pub optimal: Option<bool>,
     /// How much less another sequence could cost at most.
     pub cost_gap: Option<f64>,
-    /// The autocorrelation of the sequence (Zhou 2014 §3.7), when variety was asked for.
+    /// The autocorrelation of the sequence (Zhou 2014 §3.7), when variety was asked for; a mirrored piece counts as
+    /// the piece.
     pub autocorrelation: Option<f64>,
     /// How many successors of each piece were considered.
     pub successors: usize,
@@ -197,6 +210,19 @@ pub struct MadeReport {
 }
 
 impl BandReport {
+    /// Says how many sequences there are.
+    pub(super) fn tell_number(&mut self, tally: Option<Tally>) {
+        let log10 = |ln: f64| Some(ln / std::f64::consts::LN_10).filter(|log| log.is_finite());
+        self.log10_sequences_at_least = tally.and_then(|tally| log10(tally.ln_at_least));
+        self.log10_sequences_at_most = tally.and_then(|tally| log10(tally.ln_at_most));
+        self.log10_sequences = tally.and_then(|tally| tally.ln_counted()).and_then(log10);
+        self.sequences = match tally {
+            None => NOT_COUNTED,
+            Some(tally) if tally.ln_counted().is_some() => "counted",
+            Some(_) => "bounded: counting them would take too long",
+        };
+    }
+
     /// The report as indented JSON, arrays on one line, ending in a line break.
     pub fn to_json(&self) -> String {
         json::indented(self)

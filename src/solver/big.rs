@@ -15,6 +15,11 @@ impl Big {
     #[cfg(test)]
     const ONE: Self = Self { mantissa: 1.0, exponent: 0 };
 
+    /// `value`·2^`exponent`; the value is not negative.
+    pub(super) fn new(value: f64, exponent: i64) -> Self {
+        Self { mantissa: value, exponent }.normal()
+    }
+
     /// exp(−cost / temperature), both in the units of the problem; 1 at an infinite temperature.
     pub(super) fn of_cost(cost: Cost, temperature: f64) -> Self {
         let power = -(cost as f64) / temperature * std::f64::consts::LOG2_E;

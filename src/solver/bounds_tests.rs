@@ -402,7 +402,12 @@ fn no_estimate_says_more_than_completing_a_run_costs() {
     let tally = tally.into_inner();
     let names = ["topology", "fine", "prices", "drift", "classes of 1", "classes of 2"];
     let more = ["classes of 4", "classes of all", "classes as chosen", "grown classes", "classes at a price"];
-    for name in names.into_iter().chain(more).chain(["grown classes at a price", "classes and drift"]) {
+    for name in names
+        .into_iter()
+        .chain(more)
+        .chain(["grown classes at a price", "classes and drift"])
+        .chain(["counts at a price", "counts and rise at a price"])
+    {
         let [made, _, positive] = tally.get(name).copied().unwrap_or_default();
         assert!(made >= 20 && positive >= 1_000, "{name}: {made} made, {positive} times above 0");
     }

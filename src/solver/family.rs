@@ -81,7 +81,7 @@ fn ring_scope(problem: &Problem<'_>, m: usize) -> Scope {
 }
 
 /// What closing a ring after each piece costs, when it began with the cheapest of `firsts`.
-fn closing_costs(problem: &Problem<'_>, firsts: &[usize], allowed: &[bool]) -> Vec<Option<Cost>> {
+pub(super) fn closing_costs(problem: &Problem<'_>, firsts: &[usize], allowed: &[bool]) -> Vec<Option<Cost>> {
     let mut is_first = vec![false; problem.pieces()];
     firsts.iter().for_each(|&p| is_first[p] = true);
     (0..problem.pieces())

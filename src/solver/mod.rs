@@ -37,9 +37,11 @@ mod problem;
 mod random;
 mod reach;
 mod recurrence;
+mod rows;
 #[cfg(test)]
 mod sample_problems;
 mod table;
+mod tally;
 mod variety;
 
 pub use best::{best, canonical};
@@ -47,6 +49,7 @@ pub use census::Census;
 pub use explain::{Nearest, Refusal, explain};
 pub use problem::{Cost, Problem, Solution, Step, Unsolved};
 pub use random::Random;
+pub use tally::{Tally, tally};
 pub use variety::{Variety, autocorrelation, evenness, longest_repeat};
 
 use crate::topology::{Automaton, Goal};

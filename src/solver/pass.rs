@@ -281,7 +281,10 @@ impl Repetition {
     /// Of the run `parent` with `piece` after it.
     fn correlations(&self, labels: &Labels, parent: u32, piece: usize) -> Vec<f32> {
         match self.correlations.get(&parent) {
-            Some(before) => extend(before, piece, labels.backwards(parent)),
+            Some(before) => {
+                let number = |piece| self.variety.number(piece);
+                extend(before, number(piece), labels.backwards(parent).map(number))
+            }
             None => Vec::new(),
         }
     }

@@ -2,6 +2,9 @@
 //!
 //! A(η) = max over shifts j of Σ exp(−|η_i − η_{i+j}| / σ). The paper's maximum runs over j from 0, where the
 //! sum is the length of the sequence whatever it is; j is meant to begin at 1, and does here.
+//!
+//! η are numbers of the exemplar's pieces. A piece that is shown left for right counts as the piece itself: the eye meets
+//! the same motif again, and a mirrored run that goes back through the exemplar correlates with it like one that goes on.
 
 use rustc_hash::FxHashMap;
 
@@ -13,11 +16,27 @@ const SIGMA: f64 = 0.5;
 /// The weight β of the autocorrelation in the cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Variety {
-    /// Cost for each unit of autocorrelation.
-    pub beta: f64,
+    beta: f64,
+    /// The exemplar's number of pieces, if mirrored ones come after them.
+    originals: Option<usize>,
 }
 
 impl Variety {
+    /// The cost for each unit of autocorrelation, among pieces none of which is mirrored.
+    pub fn new(beta: f64) -> Self {
+        Self { beta, originals: None }
+    }
+
+    /// The same where piece `originals` + i is piece i, mirrored.
+    pub fn with_mirrored(self, originals: usize) -> Self {
+        Self { originals: Some(originals), ..self }
+    }
+
+    /// η: the number of a piece in the exemplar, whichever way it is shown.
+    pub(super) fn number(self, piece: usize) -> usize {
+        self.originals.and_then(|originals| piece.checked_sub(originals)).unwrap_or(piece)
+    }
+
     /// β·A for the correlations at each shift.
     pub(super) fn penalty(self, correlations: &[f32]) -> Cost {
         let most = correlations.iter().copied().fold(0.0f32, f32::max);
@@ -47,7 +66,7 @@ pub(super) fn extend(before: &[f32], last: usize, back: impl Iterator<Item = usi
     correlations
 }
 
-/// The autocorrelation A of a whole sequence.
+/// The autocorrelation A of a whole sequence of numbers of the exemplar's pieces.
 pub fn autocorrelation(sequence: &[usize]) -> f64 {
     let at = |shift: usize| -> f64 {
         sequence.iter().zip(&sequence[shift..]).map(|(&a, &b)| (-(a.abs_diff(b) as f64) / SIGMA).exp()).sum()
@@ -119,6 +138,14 @@ mod tests {
         assert!(evenness(&[2, 2, 2], 4).abs() < 1e-12);
     }
 
+    #[test]
+    fn a_mirrored_piece_counts_as_the_piece() {
+        let variety = Variety::new(1.0).with_mirrored(5);
+        let numbers: Vec<usize> = [0, 1, 4, 9, 6, 5].map(|piece| variety.number(piece)).to_vec();
+        assert_eq!(numbers, [0, 1, 4, 4, 1, 0]);
+        assert_eq!(Variety::new(1.0).number(9), 9);
+    }
+
     proptest! {
         #[test]
         fn the_longest_repeat_is_found(sequence in prop::collection::vec(0usize..3, 0..24)) {
@@ -145,6 +172,6 @@ mod tests {
         assert!(
             (0..8).all(|d| (f64::from(correlation(9, 9 + d)) - (-(d as f64) / SIGMA).exp()).abs() < 1e-7)
         );
-        assert_eq!(Variety { beta: 0.5 }.penalty(&[1.0, 6.0, 2.0]), 3_000_000);
+        assert_eq!(Variety::new(0.5).penalty(&[1.0, 6.0, 2.0]), 3_000_000);
     }
 }
