@@ -48,7 +48,7 @@ pub enum JobError {
     Refused(String),
     /// The search was given up before it found a sequence.
     #[error(
-        "the search for a sequence was given up after {labels} partial runs, without finding one and without showing that there is none; try a shorter curve, fewer constraints, or coarser --slicing uniform:T"
+        "the search for a sequence was given up after {labels} partial runs, before it had found what was asked for and without showing that it is not there; try a larger --memory-limit, a shorter curve, fewer constraints, or coarser --slicing uniform:T"
     )]
     SearchTooLarge {
         /// Labels made until then.

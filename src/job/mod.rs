@@ -32,6 +32,7 @@ mod describe;
 mod error;
 mod extrude;
 mod json;
+mod notes;
 mod output;
 mod part;
 mod plan;
@@ -45,6 +46,7 @@ mod rect_strip;
 mod rect_tile;
 mod refusal;
 mod report;
+mod several;
 mod stage;
 
 pub use crate::reeb::KeptRange;
@@ -68,6 +70,7 @@ pub use report::{
     BandReport, DroppedCutReport, FallbackReport, InputReport, MadeReport, SeamReport, StageTime,
     StitchReport,
 };
+pub use several::write_numbered;
 pub use stage::Stage;
 
 pub use crate::fit::StitchMethod;

@@ -18,7 +18,7 @@ use crate::fit::StitchMethod;
 use crate::planar::{Region, Tolerances};
 use crate::topology::Goal;
 
-/// The memory that the search for a strip may take, in bytes: one that has no sequence soon is given up.
+/// The most memory that the search for a strip may take, in bytes: one that has no sequence soon is given up.
 const STRIP_MEMORY_LIMIT: usize = 8 << 20;
 /// What a jump of the misfit 1 costs in the first pass, in λ: as in the second, as much as the jump itself.
 const MISFIT_COST: f64 = 1.0;
@@ -90,8 +90,8 @@ impl Strips {
             whole.min_feature_mm(),
             whole.min_gap_mm(),
         )?;
-        let band =
-            BandJob { options, tolerances, variety: job.band.variety, memory_limit: STRIP_MEMORY_LIMIT };
+        let memory_limit = job.band.memory_limit.min(STRIP_MEMORY_LIMIT);
+        let band = BandJob { options, tolerances, variety: job.band.variety, memory_limit };
         let exemplar = clock.time(Stage::Read, || read_exemplar(&band))?;
         Ok(Self {
             job: band,
