@@ -33,12 +33,7 @@ impl fmt::Display for Summary<'_> {
         let Self(analysis) = self;
         analysis.counts(f)?;
         let most = analysis.cuts.iter().map(|cut| cut.portals).max().unwrap_or(0);
-        writeln!(
-            f,
-            "{}; at most {} on a cut",
-            count(analysis.pieces.len(), "piece"),
-            count(most, "portal")
-        )?;
+        writeln!(f, "{}; at most {} on a cut", count(analysis.pieces.len(), "piece"), count(most, "portal"))?;
         analysis.told(f)
     }
 }

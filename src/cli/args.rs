@@ -150,7 +150,7 @@ pub(super) struct RectArguments {
     #[arg(long, value_name = "WxH", value_parser = values::size, allow_hyphen_values = true)]
     pub(super) size: RectSize,
     /// Make opposite sides match, so that copies join; the page is the tile, without a margin
-    #[arg(long, conflicts_with = "bridge")]
+    #[arg(long)]
     pub(super) tile: bool,
     #[command(flatten)]
     pub(super) pattern: PatternArguments,

@@ -37,7 +37,8 @@ impl Progress {
         let shows = !quiet && !mixes && std::io::stderr().is_terminal();
         let target = if shows { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
         let line = ProgressBar::with_draw_target(None, target);
-        let style = ProgressStyle::with_template("{spinner} {msg}{seconds}").expect("the template is well formed");
+        let style =
+            ProgressStyle::with_template("{spinner} {msg}{seconds}").expect("the template is well formed");
         line.set_style(style.with_key("seconds", |state: &ProgressState, text: &mut dyn std::fmt::Write| {
             // Short jobs have no need of a clock; nobody is left to hear of a failure to show one.
             if let seconds @ 1.. = state.elapsed().as_secs() {

@@ -162,6 +162,16 @@ mod tests {
     }
 
     #[test]
+    fn the_tightest_place_is_on_the_inner_side() {
+        let map = BandMap::new(PlanarCurve::circle(65.0).unwrap(), -20.0, 20.0).unwrap();
+        let (scale, at, radius_mm) = map.tightest();
+        assert!((scale - (1.0 - 20.0 / 32.5)).abs() < 1e-9 && (radius_mm - 32.5).abs() < 1e-9, "{scale}");
+        assert!((at.length() - 32.5).abs() < 1e-9, "{at}");
+        let straight = BandMap::new(PlanarCurve::line(65.0).unwrap(), -20.0, 20.0).unwrap();
+        assert_eq!(straight.tightest().0, 1.0);
+    }
+
+    #[test]
     fn a_line_is_mapped_as_it_is() {
         let map = BandMap::new(PlanarCurve::line(120.0).unwrap(), -7.0, 7.0).unwrap();
         assert_eq!(map.map(30.0, 4.0), DVec2::new(30.0, 4.0));

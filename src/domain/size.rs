@@ -125,7 +125,9 @@ mod tests {
             assert!((size.width_mm() - width).abs() < 1e-9, "{text}: {size}");
             assert!((size.height_mm() - height).abs() < 1e-9, "{text}: {size}");
         }
-        for (text, shown) in [("120x80mm", "120x80mm"), ("4inx3in", "101.6x76.2mm"), ("1.234x2cm", "12.34x20mm")] {
+        for (text, shown) in
+            [("120x80mm", "120x80mm"), ("4inx3in", "101.6x76.2mm"), ("1.234x2cm", "12.34x20mm")]
+        {
             assert_eq!(text.parse::<RectSize>().unwrap().to_string(), shown);
         }
     }

@@ -288,7 +288,11 @@ impl Band {
             chord_mm: self.job.tolerances.chord_mm() * SVG_SHARE,
             title: None,
             // The name only: the same drawing in another folder gives the same bytes.
-            description: Some(format!("{} of {}", self.report.generator, file_name(&self.job.options.exemplar))),
+            description: Some(format!(
+                "{} of {}",
+                self.report.generator,
+                file_name(&self.job.options.exemplar)
+            )),
         };
         Ok(export::svg(&self.part.region, &options)?)
     }
@@ -381,8 +385,8 @@ fn make_part(
             stitch,
             sides: cut.sides,
         };
-        let outline = clock
-            .time(Stage::Fit, || Outline::prepared(&cut.catalogue, &plan.sequence, &fit, prepared))?;
+        let outline =
+            clock.time(Stage::Fit, || Outline::prepared(&cut.catalogue, &plan.sequence, &fit, prepared))?;
         match clock.time(Stage::Map, || Part::new(&outline, map, planned, chord_mm * MAP_SHARE)) {
             Ok(part) => return Ok((part, outline)),
             Err(PartError::Job(error)) => return Err(error),

@@ -130,13 +130,18 @@ fn given_up(job: &BandJob, plan: &Plan) -> Option<String> {
     let gap = plan.gap.filter(|&gap| gap > 0.0 && !matches!(job.options.choice, Choice::Best(_)))?;
     let least = plan.cost - gap;
     let how_far = if least > 0.0 && gap <= MOST_TIMES * least {
-        format!("costs at most {:.0} % more in jumps and rough joins than the best there is", (100.0 * gap / least).ceil())
+        format!(
+            "costs at most {:.0} % more in jumps and rough joins than the best there is",
+            (100.0 * gap / least).ceil()
+        )
     } else {
         "works, but nothing is known of how much better the best there is would look".to_owned()
     };
     let limit = shown_bytes(job.memory_limit);
     Some(match job.memory_limit < job.options.memory_limit {
-        true => format!("the search was given up at {limit}, as there are many ways to try: the best found {how_far}"),
+        true => format!(
+            "the search was given up at {limit}, as there are many ways to try: the best found {how_far}"
+        ),
         false => format!(
             "the search was given up at --memory-limit ({limit}): the best found {how_far}; more memory or fewer constraints may give a better one"
         ),
@@ -156,11 +161,13 @@ fn stretched(stretch: f64, length_mm: f64, sides: Sides) -> Option<String> {
     let direction = if sides == Sides::Free { "along its length" } else { "upwards" };
     let (warning, done) = changed(stretch, direction)?;
     let natural_mm = length_mm / stretch;
-    let remedy = match warning {
-        true => "; it hardly looks like the ornament any more: take a length near that, another --width, or other counts",
-        false => "",
+    let (warning, remedy) = match warning {
+        true => (
+            WARNING,
+            "; it hardly looks like the ornament any more: take a length near that, another --width, or other counts",
+        ),
+        false => ("", ""),
     };
-    let warning = if warning { WARNING } else { "" };
     Some(format!(
         "{warning}the pattern was {done} to fill {length_mm:.1} mm, as by itself it is {natural_mm:.1} mm long{remedy}"
     ))
@@ -173,8 +180,14 @@ fn pressed(squash: f64, sides: Sides) -> Option<String> {
         _ => ("sideways", "to fill the width"),
     };
     let (warning, done) = changed(squash, direction)?;
-    let warning = if warning { WARNING } else { "" };
-    Some(format!("{warning}the pattern was {done}, {why}"))
+    let (warning, remedy) = match warning {
+        true => (
+            WARNING,
+            "; it hardly looks like the ornament any more: other counts or another length may spare it",
+        ),
+        false => ("", ""),
+    };
+    Some(format!("{warning}the pattern was {done}, {why}{remedy}"))
 }
 
 /// By how much something was stretched or pressed, and whether that spoils it; `None` if nobody sees it.
@@ -189,7 +202,8 @@ fn collapsed(cut: &Cut, plan: &Plan, outline: &Outline) -> Option<String> {
     let pieces = cut.catalogue.originals();
     let made_of = plan.sequence.len();
     let jumps = outline.seams.iter().filter(|seam| !seam.is_natural).count();
-    let used: BTreeSet<usize> = plan.sequence.iter().map(|&piece| cut.catalogue.origin(piece).index).collect();
+    let used: BTreeSet<usize> =
+        plan.sequence.iter().map(|&piece| cut.catalogue.origin(piece).index).collect();
     // Rows of a rectangle go on as their own reflections, which is a jump each time.
     if cut.sides != Sides::Free || pieces < FEW_PIECES || made_of < FEW_PIECES {
         return None;
@@ -221,6 +235,7 @@ fn crushed(map: &BandMap, shift_mm: DVec2) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::job::BandBuilder;
 
     #[test]
     fn stretching_is_told_when_it_shows_and_warned_of_when_it_spoils() {
@@ -230,9 +245,15 @@ mod tests {
             "the pattern was pressed by 7.0 % along its length to fill 93.0 mm, as by itself it is 100.0 mm long"
         );
         let spoilt = stretched(1.549, 154.9, Sides::Filled).unwrap();
-        assert!(spoilt.starts_with("warning: the pattern was stretched by 54.9 % upwards to fill 154.9 mm"), "{spoilt}");
+        assert!(
+            spoilt.starts_with("warning: the pattern was stretched by 54.9 % upwards to fill 154.9 mm"),
+            "{spoilt}"
+        );
         assert_eq!(pressed(0.98, Sides::Free), None);
-        assert_eq!(pressed(0.95, Sides::Free).unwrap(), "the pattern was pressed by 5.0 % in height, as it climbs");
+        assert_eq!(
+            pressed(0.95, Sides::Free).unwrap(),
+            "the pattern was pressed by 5.0 % in height, as it climbs"
+        );
         assert!(pressed(1.25, Sides::Filled).unwrap().starts_with("warning: "));
     }
 
@@ -240,6 +261,31 @@ mod tests {
     fn a_warning_stays_one_in_the_first_pass() {
         assert_eq!(of_first_pass("x"), "first pass: x");
         assert_eq!(of_first_pass("warning: x"), "warning: first pass: x");
+    }
+
+    #[test]
+    fn a_search_that_was_given_up_says_how_far_it_may_be_from_the_best() {
+        let mut job =
+            BandBuilder::new("vine.svg", "line:60mm".parse().unwrap()).memory_limit(8 << 20).build().unwrap();
+        let plan = |cost, gap| Plan {
+            sequence: vec![0],
+            cost,
+            gap,
+            epsilon: 0.05,
+            natural_length_mm: 60.0,
+            labels: 1,
+            states: 1,
+        };
+        assert_eq!((given_up(&job, &plan(3.0, None)), given_up(&job, &plan(3.0, Some(0.0)))), (None, None));
+        let told = given_up(&job, &plan(3.0, Some(0.6))).unwrap();
+        assert!(told.contains("--memory-limit (8 MB)") && told.contains("costs at most 25 % more"), "{told}");
+        assert!(given_up(&job, &plan(3.0, Some(3.0))).unwrap().contains("nothing is known"));
+        // A limit that nobody typed is not blamed on the option.
+        job.memory_limit = 1 << 20;
+        assert!(!given_up(&job, &plan(3.0, Some(0.6))).unwrap().contains("--memory-limit"));
+        // Of the K best, all but the first cost more, and no search was given up.
+        job.options.choice = Choice::Best(3);
+        assert_eq!(given_up(&job, &plan(3.0, Some(0.6))), None);
     }
 
     #[test]

@@ -181,3 +181,21 @@ pub(super) fn flat_map(length_mm: f64, height_mm: f64) -> Result<BandMap, JobErr
 pub(super) fn cuts_mm(cut: &Cut) -> Vec<f64> {
     cut.slicing.cuts.iter().map(|c| cut.region().grid().mm(c.x)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::RectBuilder;
+
+    #[test]
+    fn the_memory_limit_of_the_job_holds_for_its_strips() {
+        for (asked, held) in [(1 << 20, 1 << 20), (1 << 30, STRIP_MEMORY_LIMIT)] {
+            let job = RectBuilder::new("fixtures/exemplars/wave.svg", "60x40mm".parse().unwrap())
+                .options(|band| band.memory_limit(asked))
+                .build()
+                .unwrap();
+            let strips = Strips::new(&job, 10.0, &mut Clock::new(&mut |_| {})).unwrap();
+            assert_eq!(strips.job.memory_limit, held);
+        }
+    }
+}

@@ -113,11 +113,7 @@ fn place(narrowest: &Option<Narrowest>) -> String {
     })
 }
 
-fn within<E>(
-    found: usize,
-    wanted: Option<Between>,
-    mismatch: impl Fn(usize, Between) -> E,
-) -> Result<(), E> {
+fn within<E>(found: usize, wanted: Option<Between>, mismatch: impl Fn(usize, Between) -> E) -> Result<(), E> {
     let missed = wanted.filter(|wanted| !(wanted.least..=wanted.most).contains(&found));
     missed.map_or(Ok(()), |wanted| Err(mismatch(found, wanted)))
 }
@@ -172,7 +168,12 @@ mod tests {
     #[test]
     fn an_svg_is_checked_by_its_counts_and_at_tolerance() {
         let report = read_svg(JOINED.as_bytes(), 0.01).unwrap();
-        let fine = Expected { components: Some(2.into()), holes: Some(0.into()), min_feature_mm: 0.98, min_gap_mm: 0.48 };
+        let fine = Expected {
+            components: Some(2.into()),
+            holes: Some(0.into()),
+            min_feature_mm: 0.98,
+            min_gap_mm: 0.48,
+        };
         assert_eq!(report.check(&fine), Ok(()));
         assert_eq!(report.check(&Expected::default()), Ok(()));
         let wanted = Expected { components: Some(1.into()), ..fine };
