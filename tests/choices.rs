@@ -77,19 +77,21 @@ fn several_bands_are_written_together_or_not_at_all() {
 
 #[test]
 fn options_are_honoured_or_refused() {
-    let room = Room::with(&["vine.svg", "leaves.svg"]);
+    let room = Room::with(&["vine.svg", "strands.svg"]);
     let tile = "rect vine.svg --size 60x40mm --tile --bridge 1mm -o t.svg";
     room.refuses(tile, 2, &["--bridge", "--tile", "leave out one"]);
     let varied = "band vine.svg --along line:60mm --best 3 --variety 1 -o t.svg";
     room.refuses(varied, 2, &["--variety", "leave out --best"]);
     // Each of many bands is bridged.
-    room.succeeds(
-        "band leaves.svg --along line:80mm --components 1 --count 3 --seed 7 --bridge 1mm -o s.svg --report s.json",
-    );
+    let strands = "band strands.svg --along line:60mm --width 14mm --components 1 --count 3 --seed 7";
+    room.refuses(&format!("{strands} -o s.svg"), 3, &["--bridge"]);
+    room.succeeds(&format!("{strands} --bridge 1mm -o s.svg --report s.json"));
     let mut sequences = BTreeSet::new();
     for number in 1..=3 {
         room.succeeds(&format!("verify s-0{number}.svg --components 1"));
-        sequences.insert(room.json(&format!("s-0{number}.json"))["sequence"].to_string());
+        let report = room.json(&format!("s-0{number}.json"));
+        assert_eq!(report["bridges"]["struts"], 2);
+        sequences.insert(report["sequence"].to_string());
     }
     assert_eq!(sequences.len(), 3);
 }

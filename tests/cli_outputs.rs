@@ -161,7 +161,9 @@ fn the_same_exemplar_in_another_folder_gives_the_same_bytes() {
 
 #[test]
 fn what_looks_wrong_is_said_and_nothing_else() {
-    let room = Room::with(&["vine.svg"]);
+    let room = Room::with(&["vine.svg", "leaves.svg"]);
+    let far = room.succeeds("band leaves.svg --along line:120mm --components 1 --holes 0 -o f.svg").stderr;
+    assert!(far.contains("\nwarning: the band has ") && far.contains(" jumps in "), "{far}");
     let wide = room.succeeds("band vine.svg --along circle:65mm --width 69mm -o w.svg").stderr;
     assert!(wide.contains("\nwarning: at (") && wide.contains("15 % of the length of its middle"), "{wide}");
     let fine = room.succeeds("band vine.svg --along circle:65mm --width 14mm -o w.svg").stderr;
