@@ -141,8 +141,7 @@ impl Walk<'_> {
             let length = problem.widths[piece];
             self.load(length.min(longest));
             if let Some(state) = automaton.start(piece) {
-                let run =
-                    Run { length, piece: piece as u32, state, drift: 0, cost, weight: cost, bound: cost };
+                let run = Run { length, piece: piece as u32, state, drift: 0, cost, weight: cost, bound: cost };
                 self.meet(automaton, &mut labels, &mut passage, repetition.as_mut(), run, NONE);
             }
         }
@@ -194,15 +193,7 @@ impl Walk<'_> {
                     }
                     let Some(state) = automaton.step(label.state, step.to) else { continue };
                     let drift = label.drift.saturating_add(step.rise);
-                    let run = Run {
-                        length,
-                        piece: step.to as u32,
-                        state,
-                        drift,
-                        cost,
-                        weight: cost,
-                        bound: label.bound,
-                    };
+                    let run = Run { length, piece: step.to as u32, state, drift, cost, weight: cost, bound: label.bound };
                     self.meet(automaton, &mut labels, &mut passage, repetition.as_mut(), run, at);
                 }
             }
