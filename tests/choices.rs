@@ -6,6 +6,7 @@ mod common;
 use std::collections::BTreeSet;
 
 use common::Room;
+use openwork::job::{BandBuilder, Choice, Output, write_numbered};
 
 #[test]
 fn drawn_bands_are_different_valid_and_the_same_for_the_same_seed() {
@@ -36,17 +37,70 @@ fn the_k_best_are_in_order_and_begin_with_the_optimum() {
     let band = "band vine.svg --along line:60mm --width 14mm --components 1";
     room.succeeds(&format!("{band} -o o.svg --report o.json"));
     room.succeeds(&format!("{band} --best 3 -o k.svg --report k.json"));
-    let (optimum, reports) = (room.json("o.json"), (1..=3).map(|n| room.json(&format!("k-0{n}.json"))));
-    let reports: Vec<serde_json::Value> = reports.collect();
-    let costs: Vec<f64> = reports.iter().map(|report| report["cost"].as_f64().unwrap()).collect();
-    assert!(costs.is_sorted() && costs[0] < costs[2], "{costs:?}");
-    assert!((costs[0] - optimum["cost"].as_f64().unwrap()).abs() < 1e-9);
-    assert_eq!(optimum["optimal"], true);
-    let sequences: BTreeSet<String> = reports.iter().map(|report| report["sequence"].to_string()).collect();
-    assert_eq!(sequences.len(), 3);
+    let cost = |name: &str| room.json(name)["cost"].as_f64().unwrap();
+    let costs: Vec<f64> = (1..=3).map(|n| cost(&format!("k-0{n}.json"))).collect();
+    assert!(costs.windows(2).all(|pair| pair[0] <= pair[1]), "{costs:?}");
+    assert!((costs[0] - cost("o.json")).abs() < 1e-9);
+    // What each is worth is told against the first.
+    for (rank, cost) in (1..).zip(&costs) {
+        let report = room.json(&format!("k-0{rank}.json"));
+        assert_eq!(report["rank"], rank);
+        assert_eq!(report["optimal"], *cost == costs[0]);
+        assert!((report["cost_gap"].as_f64().unwrap() - (cost - costs[0])).abs() < 1e-9);
+    }
+    let sequence = |n: usize| room.json(&format!("k-0{n}.json"))["sequence"].to_string();
+    assert_eq!((1..=3).map(sequence).collect::<BTreeSet<_>>().len(), 3);
     for n in 1..=3 {
         room.succeeds(&format!("verify k-0{n}.svg --components 1"));
     }
+    assert!(costs[2] > costs[0]);
+    assert!(room.json("o.json")["rank"].is_null());
+    room.refuses(&format!("{band} --best 3 --memory-limit 1MB -o m.svg"), 3, &["--memory-limit"]);
+}
+
+#[test]
+fn several_bands_are_written_together_or_not_at_all() {
+    let room = Room::with(&["vine.svg"]);
+    let bands = BandBuilder::new(room.path("vine.svg"), "line:60mm".parse().unwrap())
+        .choice(Choice::Best(3))
+        .build()
+        .unwrap()
+        .run_all(&mut |_| {})
+        .unwrap();
+    let outputs = [Output::file(room.path("b.svg")).unwrap()];
+    // The last of them cannot be written.
+    std::fs::create_dir(room.path("b-03.svg")).unwrap();
+    let before = room.contents();
+    write_numbered(&bands, &outputs, None, &mut |_| {}).unwrap_err();
+    assert_eq!(room.contents(), before);
+    std::fs::remove_dir(room.path("b-03.svg")).unwrap();
+    assert_eq!(write_numbered(&bands, &outputs, None, &mut |_| {}).unwrap().len(), 3);
+    assert!((1..=3).all(|n| room.path(&format!("b-0{n}.svg")).is_file()));
+    // Numbered names are no input, and what fails verification leaves none.
+    room.succeeds("band vine.svg --along line:60mm --count 2 --seed 7 -o vine.svg");
+    let draw = "band vine.svg --along line:60mm --components 1 --count 12 --seed 7 --min-feature 0.7mm";
+    room.refuses(&format!("{draw} -o c.svg -o c.stl --report c.json"), 4, &["Nothing was written"]);
+}
+
+#[test]
+fn options_are_honoured_or_refused() {
+    let room = Room::with(&["vine.svg", "strands.svg"]);
+    let tile = "rect vine.svg --size 60x40mm --tile --bridge 1mm -o t.svg";
+    room.refuses(tile, 2, &["--bridge", "--tile", "leave out one"]);
+    let varied = "band vine.svg --along line:60mm --best 3 --variety 1 -o t.svg";
+    room.refuses(varied, 2, &["--variety", "leave out --best"]);
+    // Each of many bands is bridged.
+    let strands = "band strands.svg --along line:60mm --width 14mm --components 1 --count 3 --seed 7";
+    room.refuses(&format!("{strands} -o s.svg"), 3, &["--bridge"]);
+    room.succeeds(&format!("{strands} --bridge 1mm -o s.svg --report s.json"));
+    let mut sequences = BTreeSet::new();
+    for number in 1..=3 {
+        room.succeeds(&format!("verify s-0{number}.svg --components 1"));
+        let report = room.json(&format!("s-0{number}.json"));
+        assert_eq!(report["bridges"]["struts"], 2);
+        sequences.insert(report["sequence"].to_string());
+    }
+    assert_eq!(sequences.len(), 3);
 }
 
 #[test]

@@ -207,7 +207,7 @@ fn an_output_that_cannot_be_a_file() {
     refuses("-o out.dxf", &["--output", "out.dxf", ".svg, .stl or .png"]);
     refuses("-o out", &["--output", "out does not say a format", ".svg, .stl or .png"]);
     refuses("", &["--output <FILE>"]);
-    room.refuses("extrude vine.svg -o out.svg", 2, &["--output", "out.svg is not a solid", ".stl"]);
+    room.refuses("extrude vine.svg -o out.dxf", 2, &["--output", "out.dxf does not say a format", ".stl"]);
     room.refuses(
         "extrude vine.svg -o no/out.stl",
         2,

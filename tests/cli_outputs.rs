@@ -126,6 +126,78 @@ fn standard_output_carries_what_was_asked_for() {
 }
 
 #[test]
+fn a_drawing_is_bridged_to_a_stencil_and_a_picture() {
+    let room = Room::with(&["leaves.svg"]);
+    let extrude = "extrude leaves.svg --bridge 1mm --components 1 --holes 0";
+    let made = room.succeeds(&format!("{extrude} -o s.svg -o s.png -o s.stl --json"));
+    let report: Value = serde_json::from_slice(&made.stdout).unwrap();
+    room.succeeds("verify s.svg --components 1 --holes 0");
+    room.succeeds("verify s.stl --components 1 --holes 0");
+    assert_eq!(report["files"], Value::from(vec!["s.svg", "s.png", "s.stl"]));
+    assert_eq!((count(&report["drawing"], "components"), count(&report["solid"], "genus")), (1, 0));
+    let bridges = report["bridges"]["bridges"].as_array().unwrap().len();
+    assert!(made.stderr.contains(&format!("{bridges} bridge(s): ")), "{}", made.stderr);
+    assert!(room.read("s.png").starts_with(b"\x89PNG"));
+    // Struts are orange: without bridges the picture has no such pixel, and so it is another one.
+    room.succeeds("extrude leaves.svg -o plain.svg -o plain.png");
+    assert_ne!(room.read("plain.png"), room.read("s.png"));
+    let pages = ["plain.svg", "s.svg"].map(|name| {
+        let text = String::from_utf8(room.read(name)).unwrap();
+        text.split("viewBox=").nth(1).unwrap().split('>').next().unwrap().to_owned()
+    });
+    assert_eq!(pages[0], pages[1], "both lie on the page of the drawing");
+    room.refuses("extrude leaves.svg -o s.pdf", 2, &[".svg"]);
+}
+
+#[test]
+fn the_same_exemplar_in_another_folder_gives_the_same_bytes() {
+    let room = Room::with(&["vine.svg"]);
+    let path = room.path("vine.svg");
+    room.succeeds("band vine.svg --along line:60mm -o a.svg");
+    room.succeeds(&format!("band {} --along line:60mm -o b.svg", path.display()));
+    assert_eq!(room.read("a.svg"), room.read("b.svg"));
+    assert!(String::from_utf8(room.read("a.svg")).unwrap().contains(" of vine.svg</desc>"));
+}
+
+#[test]
+fn what_looks_wrong_is_said_and_nothing_else() {
+    let room = Room::with(&["vine.svg", "leaves.svg"]);
+    let far = room.succeeds("band leaves.svg --along line:120mm --components 1 --holes 0 -o f.svg").stderr;
+    assert!(far.contains("\nwarning: the band has ") && far.contains(" jumps in "), "{far}");
+    let wide = room.succeeds("band vine.svg --along circle:65mm --width 69mm -o w.svg").stderr;
+    assert!(wide.contains("\nwarning: at (") && wide.contains("15 % of the length of its middle"), "{wide}");
+    let fine = room.succeeds("band vine.svg --along circle:65mm --width 14mm -o w.svg").stderr;
+    assert!(!fine.contains("warning"), "{fine}");
+    // No progress where there is no terminal.
+    assert!(!fine.contains('\r') && !fine.contains('\u{1b}'), "{fine:?}");
+}
+
+#[test]
+fn ranges_are_verified_as_they_are_asked_for() {
+    let room = Room::with(&["vine.svg"]);
+    room.succeeds("verify vine.svg --components 1..2 --holes any");
+    let missed = room.run("verify vine.svg --components 3..5");
+    assert!(missed.code == 4 && missed.stderr.contains("3..5 were asked for"), "{}", missed.stderr);
+    for command in ["verify vine.svg", "band vine.svg --along line:60mm -o x.svg"] {
+        let wrong = room.run(&format!("{command} --components 5..2"));
+        assert!(wrong.code == 2 && wrong.stderr.contains("ends before it begins"), "{}", wrong.stderr);
+    }
+}
+
+#[test]
+fn rows_of_an_analysis_are_for_those_who_want_them() {
+    let room = Room::with(&["vine.svg"]);
+    let lines = |arguments: &str| {
+        let said = room.succeeds(&format!("analyze vine.svg {arguments}")).stdout;
+        String::from_utf8(said).unwrap().lines().count()
+    };
+    let rows = lines("");
+    assert!(rows > 80, "{rows}");
+    assert!(lines("-o cuts.svg") < 12);
+    assert_eq!(lines("-o cuts.svg --table"), rows);
+}
+
+#[test]
 fn a_reader_that_has_had_enough_is_no_failure() {
     let room = Room::with(&["vine.svg"]);
     let commands = [
@@ -149,6 +221,12 @@ fn a_reader_that_has_had_enough_is_no_failure() {
 #[test]
 fn the_help_teaches() {
     let room = Room::with(&[]);
+    let band = String::from_utf8(room.succeeds("band --help").stdout).unwrap();
+    for word in ["middle line", "rubble", "persistence", "looks chopped"] {
+        assert!(band.contains(word), "{word}: {band}");
+    }
+    let rect = String::from_utf8(room.succeeds("rect --help").stdout).unwrap();
+    assert!(rect.contains("upside"), "{rect}");
     let overview = String::from_utf8(room.succeeds("--help").stdout).unwrap();
     for command in ["band", "analyze", "extrude", "verify"] {
         assert!(overview.contains(command), "{overview}");

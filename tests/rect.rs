@@ -56,6 +56,12 @@ fn copies_of_a_tile_join() {
     assert_eq!((file.components, found.components, found.four_components), (1, 1, 1));
     assert_eq!(report["tiling"]["holes"], found.holes);
     assert_eq!(report["tiling"]["four_holes"], found.four_holes);
+    // The page is the tile.
+    assert_eq!(report["page_mm"], serde_json::json!([40.0, 40.0]));
+    let drawing = String::from_utf8(room.read("out.svg")).unwrap();
+    assert!(drawing.contains("width=\"40mm\" height=\"40mm\" viewBox=\"0 0 40 40\""), "{drawing:.300}");
+    let (low, high) = file.bounds_mm.unwrap();
+    assert!(low.abs().max_element() < 1e-3 && (high - 40.0).abs().max_element() < 1e-3, "{low} {high}");
     // The program says the same.
     let said = room.succeeds("verify out.svg --tiles --components 1 --json").stdout;
     let said: serde_json::Value = serde_json::from_slice(&said).unwrap();
@@ -152,6 +158,7 @@ fn what_cannot_be_is_refused_by_its_name() {
         ("vine.svg --size 0x80mm", 2, "from 1 to 2000 mm"),
         ("vine.svg --size 120x90000mm", 2, "from 1 to 2000 mm"),
         ("vine.svg --size 40x30mm --width 31mm", 2, "--width"),
+        ("vine.svg --size 4inx3in --width 90mm", 2, "101.6x76.2mm"),
         ("vine.svg --size 40x30mm --components 0", 2, "--components"),
         ("missing.svg --size 40x30mm", 2, "missing.svg"),
         // Separate leaves do not hang together however they are joined.

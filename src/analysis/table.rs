@@ -1,12 +1,50 @@
-//! The analysis as a table for a terminal.
+//! The analysis for a terminal: its counts, and a table of its pieces.
 
 use std::fmt;
 
 use super::{Analysis, PieceFound, SlicingUsed};
 
+/// What the columns of the table are.
+const LEGEND: &str = "x: left edge from the left of the ink; portals: strands cut on the left > on the right; closed: parts \
+    that reach neither side; holes: inside it; successors: pieces that may follow; left | right: the part that each strand \
+    belongs to, top to bottom";
+
 impl fmt::Display for Analysis {
     /// The counts, one line for each piece, then the notes.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.counts(f)?;
+        writeln!(f, "\npiece     x mm  width mm  portals  closed  holes  successors  left | right")?;
+        for piece in &self.pieces {
+            row(f, piece)?;
+        }
+        writeln!(f, "{LEGEND}")?;
+        if !self.notes.is_empty() {
+            writeln!(f)?;
+        }
+        self.told(f)
+    }
+}
+
+/// An analysis without its table.
+struct Summary<'a>(&'a Analysis);
+
+impl fmt::Display for Summary<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(analysis) = self;
+        analysis.counts(f)?;
+        let most = analysis.cuts.iter().map(|cut| cut.portals).max().unwrap_or(0);
+        writeln!(f, "{}; at most {} on a cut", count(analysis.pieces.len(), "piece"), count(most, "portal"))?;
+        analysis.told(f)
+    }
+}
+
+impl Analysis {
+    /// The counts and the notes, without a line for each piece.
+    pub fn summary(&self) -> impl fmt::Display + '_ {
+        Summary(self)
+    }
+
+    fn counts(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [width, height] = self.size_mm;
         writeln!(
             f,
@@ -48,13 +86,10 @@ impl fmt::Display for Analysis {
         if let Some(thin) = self.cuts.iter().filter_map(|c| c.narrowest_portal_mm).reduce(f64::min) {
             writeln!(f, "narrowest portal {thin:.3} mm")?;
         }
-        writeln!(f, "\npiece     x mm  width mm  portals  closed  holes  successors  left | right")?;
-        for piece in &self.pieces {
-            row(f, piece)?;
-        }
-        if !self.notes.is_empty() {
-            writeln!(f)?;
-        }
+        Ok(())
+    }
+
+    fn told(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for note in &self.notes {
             writeln!(f, "note: {note}")?;
         }
@@ -106,7 +141,11 @@ mod tests {
         assert!(text.contains("6 critical points: 2 begin, 2 end, 1 split, 1 merge; 0 below"), "{text}");
         assert!(text.contains("1 > 2"), "{text}");
         assert!(text.contains("  0 | 0 0\n"), "{text}");
-        assert_eq!(text.lines().filter(|l| l.contains(" | ")).count(), 1 + 8);
+        assert_eq!(text.lines().filter(|l| l.contains(" | ")).count(), 1 + 8 + 1, "head, rows and legend");
+        assert!(text.contains("portals: strands cut"), "{text}");
+        let summary = analysis(None).summary().to_string();
+        assert!(summary.starts_with("eye: 56.00 x 12.00 mm") && !summary.contains(" | "), "{summary}");
+        assert!(summary.ends_with("8 pieces; at most 2 portals on a cut\n"), "{summary}");
         let uniform = analysis(Some(SlicingRule::Uniform { lines: 3 })).to_string();
         assert!(uniform.contains("3 cuts, equally spaced"), "{uniform}");
     }

@@ -40,6 +40,8 @@ const BAND_HELP: &str = "\
 Lengths take mm, cm, in, pt or px (96 to the inch); a bare number is millimetres.
 Positions in messages are millimetres from the lower left corner of the page, y up.
 In a PNG, struts of --bridge are orange and slits are green.
+The middle line of the band follows the curve. A flat ring along circle:65mm that is 14mm wide is 65 - 14 = 51 mm
+inside and 65 + 14 = 79 mm outside.
 
 Examples:
   A bracelet in one piece that closes on itself:
@@ -61,7 +63,8 @@ Exit codes: 0 done; 2 the input or an argument is wrong; 3 the constraints canno
 const RECT_HELP: &str = "\
 Lengths take mm, cm, in, pt or px (96 to the inch); a bare number is millimetres.
 The pattern is made along the width, turned by 90 degrees and used as the exemplar along the height. What is
-asked for holds for the finished rectangle, which the ink fills from side to side.
+asked for holds for the finished rectangle, which the ink fills from side to side. Rows may also be used upside
+down, so that the pattern goes on as its own reflection, as it does in lace; often every second row is.
 
 Examples:
   A panel in one piece:
@@ -76,7 +79,9 @@ const ANALYZE_HELP: &str = "\
 Lengths take mm, cm, in, pt or px (96 to the inch); a bare number is millimetres.
 
 Examples:
-  A table of the pieces, and a picture of the cuts:
+  A table of the pieces:
+    openwork analyze vine.svg
+  A summary, and a picture of the cuts:
     openwork analyze vine.svg -o cuts.svg
   As JSON, at the height that a band is to have:
     openwork analyze vine.svg --width 14mm --json";
@@ -86,11 +91,12 @@ Lengths take mm, cm, in, pt or px (96 to the inch); a bare number is millimetres
 
 Examples:
   openwork extrude sign.svg --thickness 3mm -o sign.stl
-  A stencil in one piece from which nothing falls out:
-    openwork extrude letters.svg --bridge 1mm --components 1 --holes 0 -o stencil.stl
+  A stencil of one's own drawing in one piece, from which nothing falls out, and a picture of where the bridges are
+  (struts orange, slits green):
+    openwork extrude letters.svg --bridge 1mm --components 1 --holes 0 -o stencil.svg -o stencil.png
 
-Exit codes: 0 done; 2 the drawing or an argument is wrong; 3 there is no place for a bridge; 4 the solid failed verification and nothing
-was written; 1 a bug of ours.";
+Exit codes: 0 done; 2 the drawing or an argument is wrong; 3 there is no place for a bridge; 4 a file failed
+verification and nothing was written; 1 a bug of ours.";
 
 const VERIFY_HELP: &str = "\
 Lengths take mm, cm, in, pt or px (96 to the inch); a bare number is millimetres.
@@ -99,7 +105,7 @@ Exit code 4 when the file is not as asked for, 2 when it cannot be read. Faults 
 
 Examples:
   One piece that a nozzle of 0.5 mm can print:
-    openwork verify sign.svg --components 1 --holes 0 --min-feature 0.5mm
+    openwork verify sign.svg --components 1 --holes 0..4 --min-feature 0.5mm
   What a solid has, as JSON:
     openwork verify sign.stl --json
   Whether copies of a tile join, and what the tiling has:
@@ -113,7 +119,8 @@ Examples:
 pub(super) struct BandArguments {
     /// The ornament to learn from (SVG)
     pub(super) exemplar: PathBuf,
-    /// The curve: line:120mm, circle:65mm (diameter), path:FILE.svg or path:FILE.svg#id
+    /// The curve, which the middle line of the band follows: line:120mm, circle:65mm (its diameter; inside, a flat ring
+    /// measures 65mm less --width), path:FILE.svg or path:FILE.svg#id
     #[arg(long, value_name = "SPEC", value_parser = values::curve)]
     pub(super) along: CurveSpec,
     /// The pattern must go all the way round a closed curve
@@ -128,7 +135,9 @@ pub(super) struct BandArguments {
     /// So many different bands drawn at random; files are numbered, as out-01.svg
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(super) count: Option<u16>,
-    /// T: bands are drawn with probability in proportion to exp(-cost/T), so that more is wilder [default: 0.16]
+    /// T, how wild bands drawn at random are: each is drawn with a probability in proportion to exp(-cost/T), and a jump
+    /// costs 1. At 0.05 they are nearly the cheapest, at 0.16 there is a jump more in some thirty pieces, at 0.5 they jump
+    /// every few pieces, from 2 on they are rubble [default: 0.16]
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     pub(super) temperature: Option<f64>,
     #[command(flatten)]
@@ -142,7 +151,7 @@ pub(super) struct RectArguments {
     /// Width and height, such as 120x80mm
     #[arg(long, value_name = "WxH", value_parser = values::size, allow_hyphen_values = true)]
     pub(super) size: RectSize,
-    /// Make opposite sides match, so that copies join
+    /// Make opposite sides match, so that copies join; the page is the tile, without a margin
     #[arg(long)]
     pub(super) tile: bool,
     #[command(flatten)]
@@ -162,7 +171,9 @@ pub(super) struct PatternArguments {
     /// So many holes: a number, a range or any; the inside of a closed ring is one
     #[arg(long, value_name = "M", value_parser = values::wanted, default_value = "any", hide_default_value = true, allow_negative_numbers = true)]
     pub(super) holes: values::Count,
-    /// Where the exemplar is cut: reeb, reeb:LENGTH or uniform:T
+    /// Where the exemplar is cut: reeb, between the places where strands begin, end, split or merge; reeb:LENGTH, but not
+    /// for bumps and notches that reach less far than this along the exemplar (their persistence), so that more gives
+    /// fewer and longer pieces; uniform:T, at T equally spaced lines
     #[arg(long, value_name = "RULE", value_parser = values::slicing, default_value = "reeb")]
     pub(super) slicing: SlicingChoice,
     /// Range of the exemplar that is never cut, as 10mm..24mm from its left edge at the size it has in the band
@@ -176,19 +187,22 @@ pub(super) struct PatternArguments {
     /// [default: the optimum]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(super) seed: Option<u64>,
-    /// Weight of the autocorrelation: more gives less repetition
+    /// Weight of the autocorrelation, against repetition: 0.5 to 2 are mild, from 10 on the pattern is rubble
     #[arg(long, value_name = "BETA", default_value_t = 0.0, allow_negative_numbers = true)]
     pub(super) variety: f64,
-    /// Weight of matching positions against matching tangents, 0 to 1
+    /// What joins are chosen by: 1 is where strands meet only, 0 their directions only. Less where strands meet with kinks,
+    /// more where they are bent far to meet
     #[arg(long, default_value_t = 0.8, allow_negative_numbers = true)]
     pub(super) alpha: f64,
-    /// Cost of a jump: more keeps longer runs of the exemplar, 0 allows short cycles
+    /// Cost of a jump, which is a join that is not in the exemplar. More, as 3, where the pattern looks chopped; less, as
+    /// 0.3, where whole copies of the exemplar repeat; 0 allows short cycles
     #[arg(long, value_name = "LAMBDA", default_value_t = 1.0, allow_negative_numbers = true)]
     pub(super) jump_cost: f64,
     /// How pieces are bent to meet: warp, or lri (linear rotation-invariant deformation)
     #[arg(long, value_name = "METHOD", value_parser = values::stitch, default_value_t)]
     pub(super) stitch: StitchMethod,
-    /// Memory that the search may take before it gives optimality up, as 512MB or 2GB
+    /// Memory that the search may take before it gives optimality up, as 512MB or 2GB; in a rectangle, each way that is
+    /// tried takes 8MB at most
     #[arg(long, value_name = "SIZE", value_parser = values::memory, default_value = "2GB")]
     pub(super) memory_limit: usize,
     /// Thickness of the solid
@@ -231,7 +245,7 @@ pub(super) struct AnalyzeArguments {
     /// Height to which the exemplar is scaled [default: its own]
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(super) width: Option<f64>,
-    /// Where the exemplar is cut: reeb, reeb:LENGTH or uniform:T
+    /// Where the exemplar is cut: reeb, reeb:LENGTH or uniform:T (see openwork band --help)
     #[arg(long, value_name = "RULE", value_parser = values::slicing, default_value = "reeb")]
     pub(super) slicing: SlicingChoice,
     /// Range of the exemplar that is never cut, as 10mm..24mm from its left edge at this --width; may be repeated
@@ -245,6 +259,9 @@ pub(super) struct AnalyzeArguments {
     /// Print the analysis as JSON on standard output
     #[arg(long)]
     pub(super) json: bool,
+    /// Print a row for each piece also when a picture is written
+    #[arg(long, conflicts_with = "json")]
+    pub(super) table: bool,
     /// Say nothing but errors
     #[arg(short, long)]
     pub(super) quiet: bool,
@@ -260,19 +277,19 @@ pub(super) struct ExtrudeArguments {
     /// Lay bridges of this width so that the drawing has the components and holes asked for: struts join, slits open
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(super) bridge: Option<f64>,
-    /// Components that bridges are to make [default: as drawn]
-    #[arg(long, value_name = "N", requires = "bridge", allow_negative_numbers = true)]
-    pub(super) components: Option<usize>,
-    /// Holes that bridges are to make [default: as drawn]
-    #[arg(long, value_name = "N", requires = "bridge", allow_negative_numbers = true)]
-    pub(super) holes: Option<usize>,
+    /// Components that bridges are to make: a number, a range or any [default: as drawn]
+    #[arg(long, value_name = "N", value_parser = values::wanted, requires = "bridge", allow_negative_numbers = true)]
+    pub(super) components: Option<values::Count>,
+    /// Holes that bridges are to make: a number, a range or any [default: as drawn]
+    #[arg(long, value_name = "M", value_parser = values::wanted, requires = "bridge", allow_negative_numbers = true)]
+    pub(super) holes: Option<values::Count>,
     /// Greatest distance between a curve and its chords
     #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "0.01mm", allow_hyphen_values = true)]
     pub(super) chord: f64,
-    /// The solid to write (.stl; - for standard output)
+    /// A file to write: .stl, .svg (the outline, with its bridges) or .png; may be repeated; - is STL on standard output
     #[arg(short, long, value_name = "FILE", required = true)]
-    pub(super) output: PathBuf,
-    /// Print what was made and found as JSON on standard output
+    pub(super) output: Vec<PathBuf>,
+    /// Print what was made and found as JSON on standard output, each bridge with its position
     #[arg(long)]
     pub(super) json: bool,
     /// Say nothing but errors
@@ -293,12 +310,12 @@ pub(super) struct VerifyArguments {
     /// It must be a tile: opposite sides match, so that copies join (SVG). Tells what the tiling has
     #[arg(long)]
     pub(super) tiles: bool,
-    /// Components (SVG) or shells (STL) that it must have
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
-    pub(super) components: Option<usize>,
-    /// Holes (SVG) or total genus (STL) that it must have
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
-    pub(super) holes: Option<usize>,
+    /// Components (SVG) or shells (STL) that it must have: a number, a range with both ends as 1..2, or any
+    #[arg(long, value_name = "N", value_parser = values::wanted, default_value = "any", hide_default_value = true, allow_negative_numbers = true)]
+    pub(super) components: values::Count,
+    /// Holes (SVG) or total genus (STL) that it must have: a number, a range or any
+    #[arg(long, value_name = "M", value_parser = values::wanted, default_value = "any", hide_default_value = true, allow_negative_numbers = true)]
+    pub(super) holes: values::Count,
     #[command(flatten)]
     pub(super) tolerances: ToleranceArguments,
     /// Print what was found as JSON on standard output

@@ -13,6 +13,7 @@ macro_rules! say {
 }
 
 mod args;
+mod extrude;
 mod progress;
 mod rect;
 mod run;
@@ -33,6 +34,7 @@ pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
     // Without a handler an interruption still ends the program, only a temporary file may stay behind.
     let _ = ctrlc::set_handler(|| {
+        progress::clear();
         crate::export::remove_staged();
         std::process::exit(INTERRUPTED);
     });

@@ -4,8 +4,9 @@ use std::process::ExitCode;
 
 use super::args::RectArguments;
 use super::progress::Progress;
-use super::run::{CliError, destinations, say_found, with_pattern};
-use crate::job::{RectBuilder, RectReport};
+use super::run::{BRIDGES_SHOWN, CliError, destinations, say_bridges, say_found, with_pattern};
+use crate::domain::RectSize;
+use crate::job::{Output, RectBuilder, RectReport};
 
 pub(super) fn run_rect(arguments: &RectArguments) -> Result<ExitCode, CliError> {
     let (outputs, report_target) = destinations(&arguments.pattern)?;
@@ -21,20 +22,19 @@ pub(super) fn run_rect(arguments: &RectArguments) -> Result<ExitCode, CliError> 
         })
         .build()?;
     job.check_outputs(&outputs, report_target.as_ref())?;
-    let progress = Progress::new(quiet);
+    let progress = Progress::new(quiet, outputs.iter().map(Output::target).chain(&report_target));
     let rect = job.run(&mut |stage| progress.show(stage))?;
     let report = rect.write(&outputs, report_target.as_ref(), &mut |stage| progress.show(stage))?;
     drop(progress);
     if !quiet {
-        say_rect(&report);
+        say_rect(&report, arguments.size);
     }
     Ok(ExitCode::SUCCESS)
 }
 
-fn say_rect(report: &RectReport) {
-    let [width, height] = report.size_mm;
+fn say_rect(report: &RectReport, size: RectSize) {
     say!(
-        "{} component(s), {} hole(s) in {width} x {height} mm: {} pieces along the width, {} rows along the height, {} way(s) tried",
+        "{} component(s), {} hole(s) in {size}: {} pieces along the width, {} rows along the height, {} way(s) tried",
         report.components,
         report.holes,
         report.along_u.pieces_in_result,
@@ -50,5 +50,6 @@ fn say_rect(report: &RectReport) {
             tiling.holes
         );
     }
+    say_bridges(report.bridges.as_ref(), BRIDGES_SHOWN);
     say_found(&report.made);
 }

@@ -6,17 +6,16 @@ use std::process::ExitCode;
 use thiserror::Error;
 
 use super::args::{
-    AnalyzeArguments, Arguments, BandArguments, Command, ExtrudeArguments, PatternArguments,
-    ToleranceArguments,
+    AnalyzeArguments, Arguments, BandArguments, Command, PatternArguments, ToleranceArguments,
 };
 use super::progress::Progress;
-use super::{rect, verify};
+use super::{extrude, rect, verify};
 use crate::analysis::{Analysis, AnalysisError};
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
 use crate::export;
 use crate::job::{
-    BandBuilder, BandReport, Choice, DEFAULT_TEMPERATURE, ExtrudeBridges, Format, JobError, MadeReport,
-    Output, READ_SHARE, SlicingChoice, Target, extrude,
+    BandBuilder, BandReport, BridgesReport, Choice, DEFAULT_TEMPERATURE, Format, JobError, MadeReport,
+    Output, READ_SHARE, SlicingChoice, Target, write_numbered,
 };
 use crate::pieces::CostWeights;
 use crate::planar::{Tolerances, TolerancesError};
@@ -75,7 +74,7 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, CliError> {
         Command::Band(band) => run_band(&band),
         Command::Rect(arguments) => rect::run_rect(&arguments),
         Command::Analyze(analyze) => run_analyze(&analyze),
-        Command::Extrude(extrude) => run_extrude(&extrude),
+        Command::Extrude(arguments) => extrude::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
     }
 }
@@ -85,12 +84,12 @@ pub(super) fn tolerances(arguments: &ToleranceArguments) -> Result<Tolerances, T
     Tolerances::new(arguments.chord, or_none(arguments.min_feature), or_none(arguments.min_gap))
 }
 
-fn output(path: &Path, stdout: Format) -> Result<Output, JobError> {
+pub(super) fn output(path: &Path, stdout: Format) -> Result<Output, JobError> {
     if path.as_os_str() == "-" { Ok(Output::stdout(stdout)) } else { Output::file(path) }
 }
 
 /// Standard output cannot carry a file and JSON.
-fn refuse_json_beside(json: bool, outputs: &[Output]) -> Result<(), JobError> {
+pub(super) fn refuse_json_beside(json: bool, outputs: &[Output]) -> Result<(), JobError> {
     if json && outputs.iter().any(|output| *output.target() == Target::Stdout) {
         return Err(JobError::Option {
             option: "--json",
@@ -105,17 +104,18 @@ fn run_band(arguments: &BandArguments) -> Result<ExitCode, CliError> {
     let (outputs, report_target) = destinations(&arguments.pattern)?;
     let quiet = arguments.pattern.quiet;
     let job = builder(arguments)?.build()?;
-    job.check_outputs(&outputs, report_target.as_ref())?;
-    let progress = Progress::new(quiet);
-    let bands = job.run_all(&mut |stage| progress.show(stage))?;
     let wanted = arguments.best.or(arguments.count);
-    let mut reports = Vec::new();
-    for (number, band) in (1..).zip(&bands) {
-        let numbered = |target: &Target| wanted.map_or_else(|| target.clone(), |_| target.numbered(number));
-        let outputs: Vec<Output> = outputs.iter().map(|o| o.with_target(numbered(o.target()))).collect();
-        let report = report_target.as_ref().map(numbered);
-        reports.push(band.write(&outputs, report.as_ref(), &mut |stage| progress.show(stage))?);
+    match wanted {
+        Some(_) => job.check_numbered(&outputs, report_target.as_ref())?,
+        None => job.check_outputs(&outputs, report_target.as_ref())?,
     }
+    let progress = Progress::new(quiet, outputs.iter().map(Output::target).chain(&report_target));
+    let bands = job.run_all(&mut |stage| progress.show(stage))?;
+    let mut show = |stage| progress.show(stage);
+    let reports = match wanted {
+        Some(_) => write_numbered(&bands, &outputs, report_target.as_ref(), &mut show)?,
+        None => vec![bands[0].write(&outputs, report_target.as_ref(), &mut show)?],
+    };
     drop(progress);
     if !quiet {
         reports.iter().for_each(say_band);
@@ -146,6 +146,13 @@ fn choice(arguments: &BandArguments) -> Result<Choice, JobError> {
     }
     if arguments.temperature.is_some_and(|t| !(1e-3..=1e3).contains(&t)) {
         return Err(refuse("--temperature", "it is out of range", "use a number from 0.001 to 1000"));
+    }
+    if arguments.best.is_some() && pattern.variety > 0.0 {
+        return Err(refuse(
+            "--variety",
+            "the K best are those of least cost, and the penalty on repetition is no part of it",
+            "leave out --variety, or leave out --best",
+        ));
     }
     let is_drawn = pattern.seed.is_some() || arguments.count.is_some() || arguments.temperature.is_some();
     if is_drawn && pattern.variety > 0.0 {
@@ -221,6 +228,17 @@ pub(super) fn with_pattern(builder: BandBuilder, a: &PatternArguments) -> BandBu
     builder
 }
 
+/// How many bridges there are and where to find them; nothing where none were laid.
+pub(super) fn say_bridges(bridges: Option<&BridgesReport>, positions: &str) {
+    if let Some(laid) = bridges.filter(|laid| !laid.bridges.is_empty()) {
+        let count = laid.bridges.len();
+        say!("{count} bridge(s): {} strut(s), {} slit(s); {positions}", laid.struts, laid.slits);
+    }
+}
+
+/// Where the bridges of a pattern are listed and seen.
+pub(super) const BRIDGES_SHOWN: &str = "--report lists their positions, and a .png shows them in colour";
+
 fn say_band(report: &BandReport) {
     let closed = if report.closed_pattern { ", closed all the way round" } else { "" };
     say!(
@@ -231,6 +249,7 @@ fn say_band(report: &BandReport) {
         report.length_mm,
         report.seams.jumps
     );
+    say_bridges(report.bridges.as_ref(), BRIDGES_SHOWN);
     say_found(&report.made);
 }
 
@@ -241,11 +260,17 @@ pub(super) fn say_found(made: &MadeReport) {
         let p = narrowest.position_mm;
         say!("narrowest {what} {:.3} mm, at ({:.1}, {:.1}) mm", narrowest.width_mm, p.x, p.y);
     }
-    for note in &made.notes {
-        say!("note: {note}");
-    }
+    say_notes(&made.notes);
     for file in &made.files {
         say!("wrote {file}");
+    }
+}
+
+/// A line for each note; a warning says itself what it is.
+pub(super) fn say_notes(notes: &[String]) {
+    for note in notes {
+        let kind = if note.starts_with("warning: ") { "" } else { "note: " };
+        say!("{kind}{note}");
     }
 }
 
@@ -282,7 +307,11 @@ fn run_analyze(arguments: &AnalyzeArguments) -> Result<ExitCode, CliError> {
     if arguments.json {
         print_json(&analysis)?;
     } else if !arguments.quiet && !outputs.iter().any(|o| *o.target() == Target::Stdout) {
-        print(&format!("{analysis}\n"))?;
+        // Beside a picture, the rows of a large exemplar are only in the way.
+        match arguments.table || outputs.is_empty() {
+            true => print(&format!("{analysis}\n"))?,
+            false => print(&analysis.summary().to_string())?,
+        }
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -304,45 +333,6 @@ fn write_all(
         }
     }
     Ok(export::persist_all(staged).map_err(JobError::from)?)
-}
-
-fn run_extrude(arguments: &ExtrudeArguments) -> Result<ExitCode, CliError> {
-    let output = output(&arguments.output, Format::Stl)?;
-    if output.format() != Format::Stl {
-        return Err(CliError::Job(JobError::Option {
-            option: "--output",
-            found: format!("{} is not a solid", arguments.output.display()),
-            wanted: "end the name in .stl".to_owned(),
-        }));
-    }
-    refuse_json_beside(arguments.json, std::slice::from_ref(&output))?;
-    let tolerances = Tolerances::new(arguments.chord, 0.0, 0.0)?;
-    let progress = Progress::new(arguments.quiet);
-    let bridges = arguments.bridge.map(|width_mm| ExtrudeBridges {
-        width_mm,
-        components: arguments.components,
-        holes: arguments.holes,
-    });
-    let made = extrude(&arguments.file, arguments.thickness, &tolerances, bridges, &output, &mut |stage| {
-        progress.show(stage)
-    })?;
-    drop(progress);
-    if arguments.json {
-        print_json(&made)?;
-    }
-    if !arguments.quiet {
-        say!(
-            "{} shell(s), total genus {}: {} facets, {:.1} mm3",
-            made.solid.shells.len(),
-            made.solid.genus,
-            made.solid.triangles,
-            made.solid.volume_mm3
-        );
-        for note in &made.notes {
-            say!("note: {note}");
-        }
-    }
-    Ok(ExitCode::SUCCESS)
 }
 
 pub(super) fn print_json(report: &impl serde::Serialize) -> Result<(), CliError> {

@@ -2,6 +2,7 @@
 
 use crate::domain::{CurveSpec, RectSize, parse_length_mm};
 use crate::job::{KeptRange, SlicingChoice, StitchMethod, Wanted, WantedError};
+use crate::verify::Between;
 
 /// A length in millimetres: `12mm`, `1.2cm`, `0.5in`, `34pt`, `45px` or `12`.
 pub(super) fn length(text: &str) -> Result<f64, String> {
@@ -37,6 +38,13 @@ pub(super) fn size(text: &str) -> Result<RectSize, String> {
 /// `Option` a meaning.)
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Count(pub(super) Option<Wanted>);
+
+impl Count {
+    /// The same for what is counted on a file.
+    pub(super) fn between(self) -> Option<Between> {
+        self.0.map(|wanted| Between { least: wanted.least() as usize, most: wanted.most() as usize })
+    }
+}
 
 /// `3`, `2..5` or `any`.
 pub(super) fn wanted(text: &str) -> Result<Count, String> {
@@ -99,6 +107,15 @@ mod tests {
         for wrong in ["", "2", "0MB", "-1GB", "xMB", "99999999999999999GB"] {
             assert!(memory(wrong).unwrap_err().contains("as 512MB"), "{wrong}");
         }
+    }
+
+    #[test]
+    fn counts_are_numbers_ranges_or_any() {
+        assert_eq!(wanted("any").unwrap().between(), None);
+        assert_eq!(wanted("1..2").unwrap().between(), Some(Between { least: 1, most: 2 }));
+        assert_eq!(wanted("3").unwrap().between(), Some(3.into()));
+        assert!(wanted("5..2").unwrap_err().contains("ends before it begins"));
+        assert!(wanted("few").unwrap_err().ends_with("as 2..5, or any"));
     }
 
     #[test]

@@ -12,8 +12,8 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<ExitCode, CliError> {
     let file = arguments.file.display().to_string();
     let tolerances = tolerances(&arguments.tolerances)?;
     let expected = Expected {
-        components: arguments.components,
-        holes: arguments.holes,
+        components: arguments.components.between(),
+        holes: arguments.holes.between(),
         min_feature_mm: tolerances.min_feature_mm(),
         min_gap_mm: tolerances.min_gap_mm(),
     };

@@ -101,6 +101,19 @@ impl BandMap {
         [1.0 - v / stretch * self.curve.frame(u).curvature, (stretch * stretch).recip()]
     }
 
+    /// The least that a side of the band is scaled by along the curve, on the inner side of the bend where that is, with
+    /// the middle of that bend in the plane and its radius in mm. 1 and no radius where nothing bends.
+    pub fn tightest(&self) -> (f64, DVec2, f64) {
+        let straight = (1.0, self.curve.frame(0.0).point, f64::INFINITY);
+        let [low, high] = self.v_range;
+        let bends = self.curve.curvatures().map(|(start, length, curvature)| {
+            let at = start + 0.5 * length;
+            let [along, _] = self.scale(at, if curvature > 0.0 { high } else { low });
+            (along, self.curve.frame(at).point, curvature.abs().recip())
+        });
+        bends.fold(straight, |tightest, bend| if bend.0 < tightest.0 { bend } else { tightest })
+    }
+
     /// 1 + k |v|.
     fn stretch(&self, u: f64, v: f64) -> f64 {
         let profile = if v > 0.0 { &self.left } else { &self.right };
@@ -146,6 +159,16 @@ mod tests {
 
     fn curve(svg: &str) -> PlanarCurve {
         PlanarCurve::from_bez_path(&BezPath::from_svg(svg).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn the_tightest_place_is_on_the_inner_side() {
+        let map = BandMap::new(PlanarCurve::circle(65.0).unwrap(), -20.0, 20.0).unwrap();
+        let (scale, at, radius_mm) = map.tightest();
+        assert!((scale - (1.0 - 20.0 / 32.5)).abs() < 1e-9 && (radius_mm - 32.5).abs() < 1e-9, "{scale}");
+        assert!((at.length() - 32.5).abs() < 1e-9, "{at}");
+        let straight = BandMap::new(PlanarCurve::line(65.0).unwrap(), -20.0, 20.0).unwrap();
+        assert_eq!(straight.tightest().0, 1.0);
     }
 
     #[test]

@@ -98,9 +98,11 @@ impl FromStr for RectSize {
     }
 }
 
+/// In millimetres with two decimals at most: three inches are 76.2 and not 76.19999999999999.
 impl fmt::Display for RectSize {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}x{}mm", self.width_mm, self.height_mm)
+        let shown = |mm: f64| (mm * 100.0).round() / 100.0;
+        write!(f, "{}x{}mm", shown(self.width_mm), shown(self.height_mm))
     }
 }
 
@@ -123,7 +125,11 @@ mod tests {
             assert!((size.width_mm() - width).abs() < 1e-9, "{text}: {size}");
             assert!((size.height_mm() - height).abs() < 1e-9, "{text}: {size}");
         }
-        assert_eq!("120x80mm".parse::<RectSize>().unwrap().to_string(), "120x80mm");
+        for (text, shown) in
+            [("120x80mm", "120x80mm"), ("4inx3in", "101.6x76.2mm"), ("1.234x2cm", "12.34x20mm")]
+        {
+            assert_eq!(text.parse::<RectSize>().unwrap().to_string(), shown);
+        }
     }
 
     #[test]

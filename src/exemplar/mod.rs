@@ -193,6 +193,12 @@ impl Exemplar {
         scaled.map_err(|fault| ExemplarError::new(&self.name, fault))
     }
 
+    /// Width and height of its page in millimetres. Ink may lie outside of it.
+    pub fn page_mm(&self) -> [f64; 2] {
+        let (width, height) = self.artwork.page_mm;
+        [width * self.scale, height * self.scale]
+    }
+
     /// The ink.
     pub fn region(&self) -> &Region {
         &self.region

@@ -7,10 +7,11 @@ use glam::DVec2;
 use super::bridging::{self, BridgesReport};
 use super::builder::BandJob;
 use super::certificate::{FileDigest, sha256};
+use super::choice::Choice;
 use super::cut::{Cut, read_exemplar, slice};
 use super::describe::describe;
 use super::error::JobError;
-use super::extrude::{check_stl, name};
+use super::extrude::{check_stl, file_name, name};
 use super::output::{Format, Output, Pending, Target, persist};
 use super::part::{Part, PartError};
 use super::plan::Plan;
@@ -111,8 +112,11 @@ impl Band {
         let runs = plan_runs(job, &mut cut, &map, &mut clock)?;
         let mut bands = Vec::with_capacity(runs.plans.len());
         let mut is_fine_enough = true;
-        for (plan, planned) in runs.plans {
-            let mut band = Self::made(job, &cut, plan, planned, &map, curve_input.clone(), &mut clock)?;
+        let mut prepared = Prepared::new();
+        for (rank, run) in (1..).zip(runs.plans) {
+            let mut band =
+                Self::made_with(&mut prepared, job, &cut, run, &map, curve_input.clone(), &mut clock)?;
+            band.report.rank = matches!(options.choice, Choice::Best(_)).then_some(rank);
             if let Some(width_mm) = runs.bridge_mm {
                 let inside = bridging::inside(&map).map(|p| p + band.part.shift_mm);
                 clock.time(Stage::Bridge, || band.lay_bridges(width_mm, inside))?;
@@ -140,7 +144,20 @@ impl Band {
         curve_input: Option<InputReport>,
         clock: &mut Clock<'_>,
     ) -> Result<Self, JobError> {
-        let (part, outline) = make_part(job, cut, &plan, map, planned, clock)?;
+        Self::made_with(&mut Prepared::new(), job, cut, (plan, planned), map, curve_input, clock)
+    }
+
+    /// The same with what other bands of the same cut have `prepared`.
+    fn made_with(
+        prepared: &mut Prepared,
+        job: &BandJob,
+        cut: &Cut,
+        (plan, planned): (Plan, Topology),
+        map: &BandMap,
+        curve_input: Option<InputReport>,
+        clock: &mut Clock<'_>,
+    ) -> Result<Self, JobError> {
+        let (part, outline) = make_part(prepared, job, cut, (&plan, planned), map, clock)?;
         let report =
             describe(job, cut, &plan, planned, map, &outline, &part, curve_input, clock.times.clone());
         let counts = Counts::of(&part.region);
@@ -279,8 +296,8 @@ impl Band {
     /// What every file has to have.
     fn expected(&self) -> Expected {
         Expected {
-            components: Some(self.counts.components),
-            holes: Some(self.counts.holes),
+            components: Some(self.counts.components.into()),
+            holes: Some(self.counts.holes.into()),
             min_feature_mm: self.job.tolerances.min_feature_mm(),
             min_gap_mm: self.job.tolerances.min_gap_mm(),
         }
@@ -304,7 +321,12 @@ impl Band {
             height_mm: self.part.page_mm.y,
             chord_mm: self.job.tolerances.chord_mm() * SVG_SHARE,
             title: None,
-            description: Some(format!("{} of {}", self.report.generator, self.report.exemplar.file)),
+            // The name only: the same drawing in another folder gives the same bytes.
+            description: Some(format!(
+                "{} of {}",
+                self.report.generator,
+                file_name(&self.job.options.exemplar)
+            )),
         };
         Ok(export::svg(&self.part.region, &options)?)
     }
@@ -379,15 +401,14 @@ fn sha256_of(file: &Path) -> String {
 }
 
 fn make_part(
+    prepared: &mut Prepared,
     job: &BandJob,
     cut: &Cut,
-    plan: &Plan,
+    (plan, planned): (&Plan, Topology),
     map: &BandMap,
-    planned: Topology,
     clock: &mut Clock<'_>,
 ) -> Result<(Part, Outline), JobError> {
     let mut last = None;
-    let mut prepared = Prepared::new();
     // What no chord error can help is warped after all.
     let methods: &[StitchMethod] = match job.options.stitch {
         StitchMethod::Lri if cut.sides != Sides::Held => &[StitchMethod::Lri, StitchMethod::Warp],
@@ -404,8 +425,8 @@ fn make_part(
             stitch,
             sides: cut.sides,
         };
-        let outline = clock
-            .time(Stage::Fit, || Outline::prepared(&cut.catalogue, &plan.sequence, &fit, &mut prepared))?;
+        let outline =
+            clock.time(Stage::Fit, || Outline::prepared(&cut.catalogue, &plan.sequence, &fit, prepared))?;
         match clock.time(Stage::Map, || Part::new(&outline, map, planned, chord_mm * MAP_SHARE)) {
             Ok(part) => return Ok((part, outline)),
             Err(PartError::Job(error)) => return Err(error),

@@ -80,13 +80,13 @@ pub(super) fn can_help(error: &PlanError) -> bool {
     }
 }
 
-/// The best plan that meets as much of the goal as can be met: the components rather than the holes, as slits
-/// across strands show less than struts across gaps.
+/// The best plan that meets as much of the goal as can be met, and what it meets: the components rather than the
+/// holes, as slits across strands show less than struts across gaps.
 pub(super) fn relaxed_plan(
     catalogue: &Catalogue,
     options: &PlanOptions,
     memory_limit: usize,
-) -> Option<Plan> {
+) -> Option<(Goal, Plan)> {
     let goal = options.goal;
     let mut tried = vec![goal];
     [
@@ -100,7 +100,10 @@ pub(super) fn relaxed_plan(
         tried.push(goal);
         is_new
     })
-    .find_map(|goal| first_fit(catalogue, &PlanOptions { goal, memory_limit, ..*options }).ok())
+    .find_map(|goal| {
+        let plan = first_fit(catalogue, &PlanOptions { goal, memory_limit, ..*options });
+        plan.ok().map(|plan| (goal, plan))
+    })
 }
 
 /// The counts nearest to those of a part that has `has` that the goal allows.

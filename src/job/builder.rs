@@ -47,7 +47,7 @@ pub struct BandBuilder {
     pub(super) bridge_mm: Option<f64>,
     pub(super) choice: Choice,
     pub(super) counted: bool,
-    memory_limit: usize,
+    pub(super) memory_limit: usize,
     chord_mm: f64,
     min_feature_mm: f64,
     min_gap_mm: f64,
@@ -302,5 +302,21 @@ impl BandJob {
     /// As [`Self::run`].
     pub fn run_all(&self, progress: &mut dyn FnMut(Stage)) -> Result<Vec<Band>, JobError> {
         Band::all(self, progress)
+    }
+
+    /// The same check for bands that [`write_numbered`](super::write_numbered) is going to write: as many as the job's
+    /// [`Choice`] asks for.
+    ///
+    /// # Errors
+    /// As [`Output::check`].
+    pub fn check_numbered(&self, outputs: &[Output], report_file: Option<&Target>) -> Result<(), JobError> {
+        let most = match self.options.choice {
+            Choice::Cheapest => 1,
+            Choice::Best(count) | Choice::Drawn { count, .. } => count,
+        };
+        (1..=most).try_for_each(|number| {
+            let outputs: Vec<Output> = outputs.iter().map(|output| output.numbered(number)).collect();
+            self.check_outputs(&outputs, report_file.map(|target| target.numbered(number)).as_ref())
+        })
     }
 }

@@ -1,9 +1,10 @@
 //! What a report says of a band before its files are read again.
 
-use super::builder::{BandJob, SlicingChoice};
+use super::builder::BandJob;
 use super::certificate::Certificate;
 use super::choice::Choice;
 use super::cut::Cut;
+use super::notes::notes;
 use super::part::Part;
 use super::plan::Plan;
 use super::report::{
@@ -11,27 +12,9 @@ use super::report::{
     StageTime, StitchReport,
 };
 use crate::domain::BandMap;
-use crate::fit::{Outline, Seam, Sides};
-use crate::reeb::Slicing;
+use crate::fit::{Outline, Seam};
 use crate::solver::{autocorrelation, evenness, longest_repeat};
 use crate::topology::{Shape, Topology, Wanted};
-
-/// Cuts named in a note; a report lists all.
-const DROPPED_SHOWN: usize = 5;
-
-/// What to say of cuts through ink that is too thin.
-fn dropped_note(slicing: &Slicing) -> Option<String> {
-    let dropped = &slicing.dropped;
-    let shown = dropped.iter().take(DROPPED_SHOWN).map(|d| format!("{:.2} ({:.3})", d.x_mm, d.portal_mm));
-    let shown = shown.collect::<Vec<_>>().join(", ");
-    let more = if dropped.len() > DROPPED_SHOWN { ", ..." } else { "" };
-    (!dropped.is_empty()).then(|| {
-        format!(
-            "{} cut(s) were left out, as they pass through ink thinner than --min-feature: at x (portal) {shown}{more} mm",
-            dropped.len()
-        )
-    })
-}
 
 /// What was asked for and made; what is found in the files comes later.
 #[expect(
@@ -52,63 +35,6 @@ pub(super) fn describe(
     let options = &job.options;
     let worst = |angle: fn(&Seam) -> f64| outline.seams.iter().map(angle).fold(0.0, f64::max);
     let length_mm = map.curve().length_mm();
-    let mut notes = cut.exemplar.notes().to_vec();
-    if let [first, ..] = cut.specks[..] {
-        notes.push(format!(
-            "{} speck(s) of less than {:.1e} mm2 were left out, the first at ({:.3}, {:.3}) mm; a smaller --chord keeps them",
-            cut.specks.len(),
-            job.tolerances.chord_mm().powi(2),
-            first.x,
-            first.y
-        ));
-    }
-    if outline.method != options.stitch && cut.sides != Sides::Held {
-        notes.push(
-            "the whole band was stitched by --stitch warp, as rotation-invariant deformation made contours meet between its pieces"
-                .to_owned(),
-        );
-    }
-    if !outline.fallbacks.is_empty() {
-        notes.push(format!(
-            "{} of {} pieces were warped, as rotation-invariant deformation would have broken them",
-            outline.fallbacks.len(),
-            plan.sequence.len()
-        ));
-    }
-    if let Some(note) = dropped_note(&cut.slicing) {
-        notes.push(note);
-    }
-    if let (SlicingChoice::Uniform(lines), 1..) = (options.slicing, cut.slicing.missed) {
-        notes.push(format!(
-            "{} of the {lines} cuts were left out, as contours run along them or nearly touch there",
-            cut.slicing.missed
-        ));
-    }
-    if plan.epsilon > 0.05 {
-        notes.push(format!(
-            "no sequence came within 5 % of the length; within {:.0} % one did, and it is stretched by {:.1} %",
-            plan.epsilon * 100.0,
-            (outline.stretch - 1.0) * 100.0
-        ));
-    }
-    if plan.epsilon <= 0.05 && (outline.stretch - 1.0).abs() > 0.05 {
-        notes.push(format!(
-            "the pieces are so narrow against the length that it was met only within {:.1} %, by stretching",
-            (outline.stretch - 1.0).abs() * 100.0
-        ));
-    }
-    if outline.squash < 0.99 {
-        notes.push(format!(
-            "the band climbs and was pressed to {:.0} % of its height to fit",
-            outline.squash * 100.0
-        ));
-    }
-    for squeeze in map.squeezes() {
-        notes.push(format!(
-            "the curve bends so hard at ({:.1}, {:.1}) mm that the inner side is squeezed from {:.1} to {:.1} mm",
-            squeeze.position_mm[0], squeeze.position_mm[1], squeeze.reach_mm, squeeze.squeezed_to_mm
-        ));
-    }
     // A mirrored piece is a use of the piece.
     let origins: Vec<usize> = plan.sequence.iter().map(|&p| cut.catalogue.origin(p).index).collect();
     BandReport {
@@ -158,6 +84,7 @@ pub(super) fn describe(
             .collect(),
         sequence: plan.sequence.clone(),
         cost: plan.cost,
+        rank: None,
         optimal: plan.gap.map(|gap| gap == 0.0),
         cost_gap: plan.gap,
         autocorrelation: job.variety.map(|_| autocorrelation(&origins)),
@@ -195,7 +122,7 @@ pub(super) fn describe(
                 options.goal,
                 planned,
             ),
-            notes,
+            notes: notes(job, cut, plan, map, outline, part.shift_mm),
             times,
         },
     }

@@ -32,6 +32,7 @@ mod describe;
 mod error;
 mod extrude;
 mod json;
+mod notes;
 mod output;
 mod part;
 mod plan;
@@ -46,6 +47,7 @@ mod rect_tile;
 mod recut;
 mod refusal;
 mod report;
+mod several;
 mod stage;
 
 pub use crate::reeb::KeptRange;
@@ -70,6 +72,7 @@ pub use report::{
     BandReport, DroppedCutReport, FallbackReport, InputReport, MadeReport, SeamReport, StageTime,
     StitchReport,
 };
+pub use several::write_numbered;
 pub use stage::Stage;
 
 pub use crate::fit::StitchMethod;

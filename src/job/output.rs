@@ -106,6 +106,11 @@ impl Output {
         Self { target, format: self.format }
     }
 
+    /// The same with a number in its name (see [`Target::numbered`]).
+    pub fn numbered(&self, number: usize) -> Self {
+        self.with_target(self.target.numbered(number))
+    }
+
     /// The format.
     pub fn format(&self) -> Format {
         self.format
@@ -190,9 +195,12 @@ impl Pending {
 }
 
 /// Writes what goes to standard output, then gives all files their names. A reader of standard output that
-/// has closed the pipe has had enough, which is no failure. A report, if there is one, goes with them to its target.
-pub(super) fn persist(mut pending: Vec<Pending>, report: Option<(&Target, String)>) -> Result<(), JobError> {
-    if let Some((target, json)) = report {
+/// has closed the pipe has had enough, which is no failure. Reports go with them to their targets.
+pub(super) fn persist<'t>(
+    mut pending: Vec<Pending>,
+    reports: impl IntoIterator<Item = (&'t Target, String)>,
+) -> Result<(), JobError> {
+    for (target, json) in reports {
         pending.push(Pending::new(target, json.into_bytes())?);
     }
     let mut files = Vec::new();

@@ -6,7 +6,7 @@ use super::error::{JobError, OutlineFault};
 use crate::domain::BandMap;
 use crate::fabricate::snapped_to_f32;
 use crate::fit::Outline;
-use crate::planar::{Contour, Grid, Region, RegionError};
+use crate::planar::{Contour, Grid, GridPoint, Region, RegionError};
 use crate::topology::Topology;
 
 /// Blank page around the part, in millimetres.
@@ -66,5 +66,14 @@ impl Part {
             return Err(PartError::Untrue(OutlineFault::Counts { components, holes }));
         }
         Ok(Self { region, page_mm, shift_mm: shift })
+    }
+
+    /// The part on a page of `page_mm` that begins where the part does.
+    pub(super) fn without_margin(&self, page_mm: DVec2) -> Result<Self, JobError> {
+        let (low, _) = self.region.bounds_mm().unwrap_or_default();
+        let grid = self.region.grid();
+        let corner = GridPoint::new(-grid.steps(low.x), -grid.steps(low.y));
+        let region = snapped_to_f32(&self.region.shifted(corner)).map_err(JobError::Fabricate)?;
+        Ok(Self { region, page_mm, shift_mm: self.shift_mm - low })
     }
 }

@@ -82,12 +82,22 @@ pub(super) fn plan_runs(
     if bridging::can_help(&error) && (bridge_mm.is_some() || matches!(error, PlanError::Refused { .. })) {
         let memory_limit = if bridge_mm.is_some() { options.memory_limit / RELAXED_PART } else { HINT_BYTES };
         let relaxed = || bridging::relaxed_plan(&cut.catalogue, &options, memory_limit);
-        if let Some(plan) = clock.time(Stage::Solve, relaxed) {
-            let run = with_topology(cut, &options, plan);
+        if let Some((goal, plan)) = clock.time(Stage::Solve, relaxed) {
             if bridge_mm.is_some() {
-                return Ok(Runs { plans: vec![run], bridge_mm, sequences: None, is_exact: None });
+                let choice = job.options.choice;
+                let Chosen { plans, is_exact, .. } = match choice {
+                    Choice::Cheapest => Chosen { plans: vec![plan], sequences: None, is_exact: None },
+                    // Bridges do the rest for each of many, too.
+                    _ => clock
+                        .time(Stage::Solve, || {
+                            choose(&cut.catalogue, &PlanOptions { goal, ..options }, choice, false)
+                        })
+                        .map_err(|error| refused(error, cut, &options, ""))?,
+                };
+                let plans = plans.into_iter().map(|plan| with_topology(cut, &options, plan)).collect();
+                return Ok(Runs { plans, bridge_mm, sequences: None, is_exact });
             }
-            hint = bridging::hint(options.goal, run.1);
+            hint = bridging::hint(options.goal, with_topology(cut, &options, plan).1);
         }
     }
     Err(refused(error, cut, &options, &hint))

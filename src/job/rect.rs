@@ -10,6 +10,7 @@
 
 use super::band::Band;
 use super::error::JobError;
+use super::notes::of_first_pass;
 use super::output::{Output, Target, persist};
 use super::plan::Plan;
 use super::rect_builder::RectJob;
@@ -90,7 +91,7 @@ fn describe(job: &RectJob, found: &Found) -> RectReport {
     let made = &second.band.report;
     // Notes on the exemplar itself come with the second pass too.
     let own = first_report.made.notes.iter().filter(|note| !exemplar.notes().contains(note));
-    let notes = own.map(|note| format!("first pass: {note}")).collect();
+    let notes = own.map(|note| of_first_pass(note)).collect();
     RectReport {
         schema_version: 1,
         generator: made.generator,

@@ -52,14 +52,14 @@ impl RectBuilder {
     /// Checks every option by its name.
     ///
     /// # Errors
-    /// As [`BandBuilder::build`]; and [`JobError::Option`] for `--width` above the height of the rectangle, and
-    /// for a closed pattern, which only rings have.
+    /// As [`BandBuilder::build`]; and [`JobError::Option`] for `--width` above the height of the rectangle, for
+    /// bridges in a tile, and for a closed pattern, which only rings have.
     pub fn build(self) -> Result<RectJob, JobError> {
         let band = self.band.build()?;
         if let Some(width) = band.options.width_mm.filter(|&width| width > self.size.height_mm()) {
             return Err(JobError::Option {
                 option: "--width",
-                found: format!("rows {width} mm high do not fit a height of {} mm", self.size.height_mm()),
+                found: format!("rows {width:.2} mm high do not fit a rectangle of {}", self.size),
                 wanted: "make the rows lower, or the rectangle higher".to_owned(),
             });
         }
@@ -68,6 +68,14 @@ impl RectBuilder {
                 option: "--closed-pattern",
                 found: "a rectangle is not closed".to_owned(),
                 wanted: "a pattern can close only along a closed curve; leave it out".to_owned(),
+            });
+        }
+        if self.tile && band.options.bridge_mm.is_some() {
+            return Err(JobError::Option {
+                option: "--bridge",
+                found: "bridges across the sides of a --tile would not match those of its copies".to_owned(),
+                wanted: "leave out one of the two; openwork extrude --bridge can bridge a tile that is cut by itself"
+                    .to_owned(),
             });
         }
         Ok(RectJob { band, size: self.size, tile: self.tile })

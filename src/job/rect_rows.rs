@@ -41,7 +41,7 @@ const WEAKNESS_COST: f64 = 10.0;
 /// Successors that are weighed of each row, of each orientation. A row's own reflection is among the cheapest; more
 /// make the search longer and the pattern no better.
 const SUCCESSORS: usize = 4;
-/// The memory that the search for rows may take, in bytes: a way that has no sequence soon is given up for the next.
+/// The most memory that the search for rows may take, in bytes: a way that has no sequence soon is given up for the next.
 const ROWS_MEMORY_LIMIT: usize = 8 << 20;
 /// Rows may be pressed or stretched sideways by this much to fill the width: as a band along its length.
 const STRETCH: std::ops::RangeInclusive<f64> = 0.7..=1.3;
@@ -106,7 +106,8 @@ impl Way {
         options.weights.weakness = WEAKNESS_COST;
         options.weights.worst_misfit = wish.worst_misfit;
         options.weights.successors = SUCCESSORS;
-        let job = BandJob { options, memory_limit: ROWS_MEMORY_LIMIT, ..job.band.clone() };
+        let memory_limit = job.band.memory_limit.min(ROWS_MEMORY_LIMIT);
+        let job = BandJob { options, memory_limit, ..job.band.clone() };
         let mut slice =
             |region: &_| clock.time(Stage::Slice, || slice_region(&job, exemplar.clone(), region));
         // The lower side to the right, so that rows come in reading order.
@@ -161,6 +162,12 @@ impl Way {
             )));
         }
         band.part = turned_back(&band.part);
+        if tile {
+            // Copies are set page by page.
+            let [low, high] = map.v_range_mm();
+            band.part = band.part.without_margin(DVec2::new(high - low, map.curve().length_mm()))?;
+        }
+        band.report.made.page_mm = band.part.page_mm.to_array();
         if let Some((width_mm, _)) = bridges {
             clock.time(Stage::Bridge, || band.lay_bridges(width_mm, None))?;
         }

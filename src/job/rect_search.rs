@@ -98,8 +98,7 @@ pub(super) fn search(job: &RectJob, clock: &mut Clock<'_>) -> Result<Found, JobE
     let mut search =
         Search { job, map, clock, attempts: Vec::new(), allowed: 0, bridge_mm: None, error: None };
     let goals = goals(job);
-    // Bridges across the sides of a tile would have to match too.
-    let bridge_mm = job.band.options.bridge_mm.filter(|_| !job.tile);
+    let bridge_mm = job.band.options.bridge_mm;
     let relaxed = relaxed_goals(job);
     for bar in BARS {
         if let Some(found) = search.at_bar(&mut heights, &goals, bar) {

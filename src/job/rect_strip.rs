@@ -18,7 +18,7 @@ use crate::fit::StitchMethod;
 use crate::planar::{Region, Tolerances};
 use crate::topology::Goal;
 
-/// The memory that the search for a strip may take, in bytes: one that has no sequence soon is given up.
+/// The most memory that the search for a strip may take, in bytes: one that has no sequence soon is given up.
 const STRIP_MEMORY_LIMIT: usize = 8 << 20;
 /// What a jump of the misfit 1 costs in the first pass, in λ: as in the second, as much as the jump itself.
 const MISFIT_COST: f64 = 1.0;
@@ -90,8 +90,8 @@ impl Strips {
             whole.min_feature_mm(),
             whole.min_gap_mm(),
         )?;
-        let band =
-            BandJob { options, tolerances, variety: job.band.variety, memory_limit: STRIP_MEMORY_LIMIT };
+        let memory_limit = job.band.memory_limit.min(STRIP_MEMORY_LIMIT);
+        let band = BandJob { options, tolerances, variety: job.band.variety, memory_limit };
         let exemplar = clock.time(Stage::Read, || read_exemplar(&band))?;
         Ok(Self {
             job: band,
@@ -180,4 +180,22 @@ pub(super) fn flat_map(length_mm: f64, height_mm: f64) -> Result<BandMap, JobErr
 /// Where a region was cut, in millimetres.
 pub(super) fn cuts_mm(cut: &Cut) -> Vec<f64> {
     cut.slicing.cuts.iter().map(|c| cut.region().grid().mm(c.x)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::RectBuilder;
+
+    #[test]
+    fn the_memory_limit_of_the_job_holds_for_its_strips() {
+        for (asked, held) in [(1 << 20, 1 << 20), (1 << 30, STRIP_MEMORY_LIMIT)] {
+            let job = RectBuilder::new("fixtures/exemplars/wave.svg", "60x40mm".parse().unwrap())
+                .options(|band| band.memory_limit(asked))
+                .build()
+                .unwrap();
+            let strips = Strips::new(&job, 10.0, &mut Clock::new(&mut |_| {})).unwrap();
+            assert_eq!(strips.job.memory_limit, held);
+        }
+    }
 }

@@ -143,9 +143,11 @@ pub struct BandReport {
     pub sequence: Vec<usize>,
     /// The cost of the sequence (Zhou 2014 §3.6.1, with jumps and rises).
     pub cost: f64,
+    /// Of the cheapest bands, as `--best` lists them, which this is, from 1; null when these were not asked for.
+    pub rank: Option<usize>,
     /// Whether no cheaper sequence meets the constraints; null when a seed or variety was asked for.
     pub optimal: Option<bool>,
-    /// How much less another sequence could cost at most.
+    /// How much less another sequence could cost at most. With `rank`, exactly what it costs more than the first.
     pub cost_gap: Option<f64>,
     /// The autocorrelation of the sequence (Zhou 2014 §3.7), when variety was asked for; a mirrored piece counts as
     /// the piece.

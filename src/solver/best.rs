@@ -15,15 +15,21 @@ use super::problem::{Cost, Problem, Solution, Unsolved};
 use super::table::{NEVER, TABLE_BUDGET, Table};
 use crate::topology::{Automaton, Goal, Shape, StateId};
 
-/// Nodes at which it is given up.
+/// Nodes at which it is given up, where there is memory for them.
 const NODE_LIMIT: usize = 300_000;
 /// Runs at which the drift is taken into the pass, and runs at which it is given up.
 const MOST_RUNS: [usize; 2] = [1_000_000, 20_000_000];
+/// The most bytes of the table of a scope. More, and listing takes no less time.
+const MOST_TABLE: usize = 8 * TABLE_BUDGET;
+/// What a run takes, in bytes, with its places in the queue and room to grow.
+const RUN_BYTES: usize = 2 * (size_of::<Run>() + 2 * size_of::<Waiting>());
 
-/// The `k` cheapest sequences that meet `goal`, or all if there are fewer, cheapest first.
+/// The `k` cheapest sequences that meet `goal`, or all if there are fewer, cheapest first. The gap of each is what it
+/// costs more than the first. Half of the problem's memory is for tables, half for runs.
 ///
 /// # Errors
-/// [`Unsolved::Infeasible`] when there is none, [`Unsolved::TooLarge`] when there is too much to go through.
+/// [`Unsolved::Infeasible`] when there is none, [`Unsolved::TooLarge`] when there is too much to go through, or more than
+/// the problem's memory holds.
 pub fn best(problem: &Problem<'_>, goal: Goal, k: usize) -> Result<Vec<Solution>, Unsolved> {
     match list(problem, goal, k, false) {
         Err(Unsolved::TooLarge { .. }) => list(problem, goal, k, true),
@@ -42,29 +48,37 @@ fn list(problem: &Problem<'_>, goal: Goal, k: usize, by_drift: bool) -> Result<V
     members.sort_by_key(|(estimate, scope)| (Reverse(*estimate), Reverse(scope.starts[0].0)));
     let mut found: Vec<Solution> = Vec::new();
     let mut seen: BTreeSet<Vec<usize>> = BTreeSet::new();
-    let mut runs = 0;
+    let (mut steps, mut runs) = (0, 0);
+    let most_runs = problem.memory_limit / 2 / RUN_BYTES;
+    let mut table_bytes = problem.memory_limit / 2;
     while found.len() < k {
         let next = lists.iter().map(Listing::estimate).min().unwrap_or(NEVER);
         // A member is opened when nothing cheaper is left.
         if members.last().is_some_and(|(estimate, _)| *estimate <= next) {
             let (_, scope) = members.pop().expect("there is a last member");
-            let list = Listing::new(problem, &mut automaton, scope, by_drift);
-            lists.push(list.ok_or(Unsolved::TooLarge { labels: runs })?);
+            let list = Listing::new(problem, &mut automaton, scope, by_drift, &mut table_bytes);
+            let list = list.ok_or(Unsolved::TooLarge { labels: steps })?;
+            runs += list.runs.len();
+            lists.push(list);
             continue;
         }
         let Some(list) = lists.iter_mut().filter(|l| l.estimate() != NEVER).min_by_key(|l| l.estimate())
         else {
             break;
         };
-        runs += 1;
-        if runs > MOST_RUNS[usize::from(by_drift)] {
-            return Err(Unsolved::TooLarge { labels: runs });
+        steps += 1;
+        if steps > MOST_RUNS[usize::from(by_drift)] || runs > most_runs {
+            return Err(Unsolved::TooLarge { labels: steps });
         }
-        if let Some((cost, sequence)) = list.advance(problem)
+        let before = list.runs.len();
+        let next = list.advance(problem);
+        runs += list.runs.len() - before;
+        if let Some((cost, sequence)) = next
             && stays_in_band(problem, &sequence)
             && seen.insert(canonical(&sequence, problem.shape))
         {
-            found.push(Solution { sequence, cost, gap: 0, labels: runs, states: automaton.len() });
+            let gap = cost - found.first().map_or(cost, |first| first.cost);
+            found.push(Solution { sequence, cost, gap, labels: steps, states: automaton.len() });
         }
     }
     if found.is_empty() { Err(Unsolved::Infeasible) } else { Ok(found) }
@@ -99,25 +113,35 @@ struct Run {
 
 const NONE: u32 = u32::MAX;
 
+/// A run by the cost of its best completion, and whether it stops here.
+type Waiting = (Reverse<Cost>, Reverse<u32>, bool);
+
 /// The sequences of one scope, cheapest first.
 struct Listing {
     explored: Explored<(StateId, i32)>,
     table: Table<Cost>,
     runs: Vec<Run>,
-    /// By cost of the best completion; a run that stops here is marked.
-    open: BinaryHeap<(Reverse<Cost>, Reverse<u32>, bool)>,
+    open: BinaryHeap<Waiting>,
 }
 
 impl Listing {
+    /// `None` when it does not fit `table_bytes`; what its table may take of them is taken.
     fn new(
         problem: &Problem<'_>,
         automaton: &mut Automaton<'_>,
         scope: Scope,
         by_drift: bool,
+        table_bytes: &mut usize,
     ) -> Option<Self> {
-        let mut explored = triples(problem, automaton, &scope, by_drift, NODE_LIMIT)?;
+        let mut explored = triples(problem, automaton, &scope, by_drift, problem.share(NODE_LIMIT))?;
         let graph = std::mem::take(&mut explored.graph);
-        let table = Table::new(graph.into(), problem.window.clone(), 8 * TABLE_BUDGET, |toll| toll.cost);
+        let row = graph.len() * size_of::<Cost>();
+        let (rows, widest) = (*problem.window.end() as usize + 1, graph.widest());
+        // With all rows, or with as few as a table makes do with: a block, and what each block is made of.
+        let (whole, least) = ((rows + 2 * widest) * row, 2 * ((rows * widest).isqrt() + widest) * row);
+        let budget = whole.min(MOST_TABLE).min(*table_bytes);
+        *table_bytes = table_bytes.checked_sub(budget.max(least.min(whole)))?;
+        let table = Table::new(graph.into(), problem.window.clone(), budget, |toll| toll.cost);
         let mut list = Self { explored, table, runs: Vec::new(), open: BinaryHeap::new() };
         for &(piece, cost) in &scope.starts {
             let state = automaton.start(piece);

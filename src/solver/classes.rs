@@ -212,7 +212,9 @@ impl Classes {
         let mut explored = Explored::new(problem, begins, limit, expand)?;
         let mut passes = Passes::new(problem, std::mem::take(&mut explored.graph))?;
         if let Some(wanted) = goal.holes {
-            let euler = 1 - i64::from(wanted.most())..=1 - i64::from(wanted.least());
+            // A goal of at most one component may be met without ink.
+            let components = goal.components.map_or(1, |wanted| i64::from(wanted.least()));
+            let euler = components - i64::from(wanted.most())..=1 - i64::from(wanted.least());
             passes.learn_counts(problem, &starts(problem, scope, names, &explored), euler);
         }
         Some((explored, passes))

@@ -111,7 +111,7 @@ impl Sample {
                 5 => (Wanted::between(0, 1), None),
                 6 => (exactly(components), None),
                 // With holes, no components and one are not told apart by classes.
-                7 => (up_from(components.max(1)), exactly(holes)),
+                7 => (up_from(components), exactly(holes)),
                 8 => (None, Wanted::between(0, holes)),
                 _ => (None, up_from(holes)),
             };

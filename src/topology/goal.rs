@@ -91,10 +91,16 @@ impl fmt::Display for Wanted {
 
 /// A text that is no [`Wanted`].
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error(
-    "'{0}' is neither a number nor a range; use a number, as 1, or a range with both ends included, as 2..5"
-)]
-pub struct WantedError(String);
+pub enum WantedError {
+    /// It is neither a number nor two with dots between them.
+    #[error(
+        "'{0}' is neither a number nor a range; use a number, as 1, or a range with both ends included, as 2..5"
+    )]
+    Form(String),
+    /// The range has its ends the wrong way round.
+    #[error("'{0}' ends before it begins; give the smaller number first, as 2..5")]
+    Backwards(String),
+}
 
 impl FromStr for Wanted {
     type Err = WantedError;
@@ -102,14 +108,13 @@ impl FromStr for Wanted {
     /// Reads `3`, or `2..5` with both ends included.
     fn from_str(text: &str) -> Result<Self, WantedError> {
         let number = |text: &str| text.trim().parse::<u32>().ok();
-        let parsed = match text.split_once("..") {
-            None => number(text).map(Self::exactly),
-            Some((least, most)) => {
-                let most = most.strip_prefix('=').unwrap_or(most);
-                number(least).zip(number(most)).and_then(|(least, most)| Self::between(least, most))
-            }
+        let form = || WantedError::Form(text.to_owned());
+        let Some((least, most)) = text.split_once("..") else {
+            return number(text).map(Self::exactly).ok_or_else(form);
         };
-        parsed.ok_or_else(|| WantedError(text.to_owned()))
+        let most = most.strip_prefix('=').unwrap_or(most);
+        let (least, most) = number(least).zip(number(most)).ok_or_else(form)?;
+        Self::between(least, most).ok_or_else(|| WantedError::Backwards(text.to_owned()))
     }
 }
 
@@ -156,6 +161,7 @@ mod tests {
         for wrong in ["", "x", "5..2", "1..", "..3", "-1", "1.5", "99999999999"] {
             assert!(wrong.parse::<Wanted>().unwrap_err().to_string().contains("as 2..5"), "{wrong}");
         }
+        assert!("5..2".parse::<Wanted>().unwrap_err().to_string().contains("ends before it begins"));
         let wanted: Wanted = "2..5".parse().unwrap();
         assert_eq!([0, 2, 4, 5, 9].map(|n| wanted.distance(n)), [2, 0, 0, 0, 4]);
     }

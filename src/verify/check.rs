@@ -1,5 +1,7 @@
 //! What was asked for, held against what a file has.
 
+use std::fmt;
+
 use thiserror::Error;
 
 use super::endure::{endures_dilation, endures_erosion};
@@ -7,13 +9,37 @@ use super::narrowest::Narrowest;
 use super::shells::{StlFault, StlReport};
 use super::svg::SvgReport;
 
+/// The numbers that are as expected: all from the least to the most, both included.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Between {
+    /// The least of them.
+    pub least: usize,
+    /// The greatest of them.
+    pub most: usize,
+}
+
+impl From<usize> for Between {
+    fn from(n: usize) -> Self {
+        Self { least: n, most: n }
+    }
+}
+
+impl fmt::Display for Between {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.least == self.most {
+            true => write!(f, "{}", self.least),
+            false => write!(f, "{}..{}", self.least, self.most),
+        }
+    }
+}
+
 /// What a file should have.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Expected {
     /// The number of components (shells of a solid); `None` is any.
-    pub components: Option<usize>,
+    pub components: Option<Between>,
     /// The number of holes (total genus of a solid); `None` is any.
-    pub holes: Option<usize>,
+    pub holes: Option<Between>,
     /// The counts must stay the same after eroding by half of this; 0 asks for nothing.
     pub min_feature_mm: f64,
     /// The counts must stay the same after dilating by half of this; 0 asks for nothing.
@@ -29,7 +55,7 @@ pub enum Mismatch {
         /// In the file.
         found: usize,
         /// Asked for.
-        wanted: usize,
+        wanted: Between,
     },
     /// Another number of holes.
     #[error("the file has {found} hole(s); {wanted} were asked for")]
@@ -37,7 +63,7 @@ pub enum Mismatch {
         /// In the file.
         found: usize,
         /// Asked for.
-        wanted: usize,
+        wanted: Between,
     },
     /// Ink that the machine would lose.
     #[error("ink narrower than {wanted_mm} mm holds the pattern together{}", place(narrowest))]
@@ -61,7 +87,7 @@ pub enum Mismatch {
         /// In the file.
         found: usize,
         /// Asked for.
-        wanted: usize,
+        wanted: Between,
     },
     /// Another total genus.
     #[error("the solid has {found} tunnel(s) (total genus); {wanted} were asked for")]
@@ -69,7 +95,7 @@ pub enum Mismatch {
         /// In the file.
         found: i64,
         /// Asked for.
-        wanted: usize,
+        wanted: Between,
     },
     /// A solid that is not sound, so that its counts mean nothing.
     #[error("the solid has {count} fault(s), first: {first}")]
@@ -87,8 +113,9 @@ fn place(narrowest: &Option<Narrowest>) -> String {
     })
 }
 
-fn same<E>(found: usize, wanted: Option<usize>, mismatch: impl Fn(usize, usize) -> E) -> Result<(), E> {
-    wanted.filter(|&wanted| wanted != found).map_or(Ok(()), |wanted| Err(mismatch(found, wanted)))
+fn within<E>(found: usize, wanted: Option<Between>, mismatch: impl Fn(usize, Between) -> E) -> Result<(), E> {
+    let missed = wanted.filter(|wanted| !(wanted.least..=wanted.most).contains(&found));
+    missed.map_or(Ok(()), |wanted| Err(mismatch(found, wanted)))
 }
 
 impl SvgReport {
@@ -97,8 +124,8 @@ impl SvgReport {
     /// # Errors
     /// The first [`Mismatch`]; for a width, with the narrowest place of the file.
     pub fn check(&self, expected: &Expected) -> Result<(), Mismatch> {
-        same(self.components, expected.components, |found, wanted| Mismatch::Components { found, wanted })?;
-        same(self.holes, expected.holes, |found, wanted| Mismatch::Holes { found, wanted })?;
+        within(self.components, expected.components, |found, wanted| Mismatch::Components { found, wanted })?;
+        within(self.holes, expected.holes, |found, wanted| Mismatch::Holes { found, wanted })?;
         let wanted_mm = expected.min_feature_mm;
         if wanted_mm > 0.0 && !endures_erosion(&self.region, 0.5 * wanted_mm, self.chord_mm) {
             return Err(Mismatch::Feature { wanted_mm, narrowest: self.min_feature });
@@ -121,13 +148,10 @@ impl StlReport {
         if let Some(first) = self.faults.first() {
             return Err(Mismatch::Faults { count: self.faults.len(), first: first.clone() });
         }
-        same(self.shells.len(), expected.components, |found, wanted| Mismatch::Shells { found, wanted })?;
-        match expected.holes {
-            Some(wanted) if i64::try_from(wanted) != Ok(self.genus) => {
-                Err(Mismatch::Genus { found: self.genus, wanted })
-            }
-            _ => Ok(()),
-        }
+        within(self.shells.len(), expected.components, |found, wanted| Mismatch::Shells { found, wanted })?;
+        let mismatch = |_, wanted| Mismatch::Genus { found: self.genus, wanted };
+        // Sound shells have no negative genus.
+        within(usize::try_from(self.genus).unwrap_or(usize::MAX), expected.holes, mismatch)
     }
 }
 
@@ -144,13 +168,22 @@ mod tests {
     #[test]
     fn an_svg_is_checked_by_its_counts_and_at_tolerance() {
         let report = read_svg(JOINED.as_bytes(), 0.01).unwrap();
-        let fine = Expected { components: Some(2), holes: Some(0), min_feature_mm: 0.98, min_gap_mm: 0.48 };
+        let fine = Expected {
+            components: Some(2.into()),
+            holes: Some(0.into()),
+            min_feature_mm: 0.98,
+            min_gap_mm: 0.48,
+        };
         assert_eq!(report.check(&fine), Ok(()));
         assert_eq!(report.check(&Expected::default()), Ok(()));
-        let wanted = Expected { components: Some(1), ..fine };
-        assert_eq!(report.check(&wanted), Err(Mismatch::Components { found: 2, wanted: 1 }));
-        let wanted = Expected { holes: Some(3), ..fine };
-        assert_eq!(report.check(&wanted), Err(Mismatch::Holes { found: 0, wanted: 3 }));
+        let wanted = Expected { components: Some(1.into()), ..fine };
+        assert_eq!(report.check(&wanted), Err(Mismatch::Components { found: 2, wanted: 1.into() }));
+        let wanted = Expected { holes: Some(3.into()), ..fine };
+        assert_eq!(report.check(&wanted), Err(Mismatch::Holes { found: 0, wanted: 3.into() }));
+        let two_or_more = Between { least: 2, most: 4 };
+        assert_eq!(report.check(&Expected { components: Some(two_or_more), ..fine }), Ok(()));
+        let missed = report.check(&Expected { holes: Some(two_or_more), ..fine }).unwrap_err();
+        assert_eq!(missed.to_string(), "the file has 0 hole(s); 2..4 were asked for");
         let text = report.check(&Expected { min_feature_mm: 1.02, ..fine }).unwrap_err().to_string();
         assert!(
             text.starts_with("ink narrower than 1.02 mm holds the pattern together: 1.000 mm at ("),
@@ -171,12 +204,12 @@ mod tests {
         });
         let report =
             |n: usize| read_stl(format!("solid t\n{}endsolid t\n", facets[..n].concat()).as_bytes()).unwrap();
-        let wanted = Expected { components: Some(1), holes: Some(0), ..Expected::default() };
+        let wanted = Expected { components: Some(1.into()), holes: Some(0.into()), ..Expected::default() };
         assert_eq!(report(4).check(&wanted), Ok(()));
-        let holed = Expected { holes: Some(1), ..wanted };
-        assert_eq!(report(4).check(&holed), Err(Mismatch::Genus { found: 0, wanted: 1 }));
-        let two = Expected { components: Some(2), ..wanted };
-        assert_eq!(report(4).check(&two), Err(Mismatch::Shells { found: 1, wanted: 2 }));
+        let holed = Expected { holes: Some(1.into()), ..wanted };
+        assert_eq!(report(4).check(&holed), Err(Mismatch::Genus { found: 0, wanted: 1.into() }));
+        let two = Expected { components: Some(2.into()), ..wanted };
+        assert_eq!(report(4).check(&two), Err(Mismatch::Shells { found: 1, wanted: 2.into() }));
         assert!(matches!(report(3).check(&wanted), Err(Mismatch::Faults { count: 3, .. })));
     }
 }

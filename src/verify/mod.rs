@@ -34,7 +34,7 @@ mod walls;
 pub use certificate::{
     CertificateError, CertificateFault, CertificatePlace, CertificateReport, Counted, replay_certificate,
 };
-pub use check::{Expected, Mismatch};
+pub use check::{Between, Expected, Mismatch};
 pub use endure::{endures_dilation, endures_erosion};
 pub use error::VerifyError;
 pub use narrowest::{Narrowest, Widths, min_feature, min_gap, widths};

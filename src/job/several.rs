@@ -1,0 +1,41 @@
+//! Several bands of one job, written together or not at all.
+
+use super::band::Band;
+use super::error::JobError;
+use super::output::{Output, Target, persist};
+use super::report::BandReport;
+use super::stage::Stage;
+
+/// Writes `bands` as [`Band::write`] writes one, with the number of each, from 1, in the names of its files (see
+/// [`Target::numbered`]). Files get their names when those of all bands have passed.
+///
+/// # Errors
+/// As [`Band::write`]; then no band has a file. [`JobError::Option`] also for several bands on standard output.
+pub fn write_numbered(
+    bands: &[Band],
+    outputs: &[Output],
+    report_file: Option<&Target>,
+    progress: &mut dyn FnMut(Stage),
+) -> Result<Vec<BandReport>, JobError> {
+    let targets = outputs.iter().map(Output::target).chain(report_file);
+    if bands.len() > 1 && targets.into_iter().any(|target| *target == Target::Stdout) {
+        return Err(JobError::Option {
+            option: "--output",
+            found: "several bands do not fit on standard output".to_owned(),
+            wanted: "give it a name".to_owned(),
+        });
+    }
+    let mut reports = Vec::with_capacity(bands.len());
+    let mut pending = Vec::new();
+    for (number, band) in (1..).zip(bands) {
+        let outputs: Vec<Output> = outputs.iter().map(|output| output.numbered(number)).collect();
+        let report_file = report_file.map(|target| target.numbered(number));
+        band.job.check_outputs(&outputs, report_file.as_ref())?;
+        let (report, files) = band.deliver(&outputs, progress)?;
+        pending.extend(files);
+        reports.push((report, report_file));
+    }
+    let told = reports.iter().filter_map(|(report, file)| Some((file.as_ref()?, report.to_json())));
+    persist(pending, told.collect::<Vec<_>>())?;
+    Ok(reports.into_iter().map(|(report, _)| report).collect())
+}
