@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::plan::{Plan, PlanError, PlanOptions, finish, plan, problem_of};
+use super::plan::{Plan, PlanError, PlanOptions, finish, first_fit, problem_of, why};
 use crate::pieces::Catalogue;
 use crate::solver::{self, Census, Random, Solution, Tally, Unsolved, canonical};
 use crate::topology::Shape;
@@ -54,14 +54,24 @@ pub struct Chosen {
 /// The sequences of `catalogue` for `options` that `choice` takes; with `counted`, all are counted.
 ///
 /// # Errors
-/// As [`plan`]; [`PlanError::TooLarge`] also when there is too much to list the k cheapest.
+/// As [`super::plan`]; [`PlanError::TooLarge`] also when there is too much to list the k cheapest.
 pub fn choose(
     catalogue: &Catalogue,
     options: &PlanOptions,
     choice: Choice,
     counted: bool,
 ) -> Result<Chosen, PlanError> {
-    let cheapest = plan(catalogue, options)?;
+    chosen(catalogue, options, choice, counted).map_err(|error| why(catalogue, options, error))
+}
+
+/// The same, without a reason where there is none.
+pub(super) fn chosen(
+    catalogue: &Catalogue,
+    options: &PlanOptions,
+    choice: Choice,
+    counted: bool,
+) -> Result<Chosen, Unsolved> {
+    let cheapest = first_fit(catalogue, options)?;
     let problem = problem_of(catalogue, options, cheapest.epsilon);
     let effort = if choice == Choice::Cheapest { COUNTING_EFFORT } else { LONG_COUNTING_EFFORT };
     let count = || solver::tally(&problem, options.goal, Some(&cheapest.sequence), effort);
@@ -71,10 +81,7 @@ pub fn choose(
     let (plans, is_exact) = match choice {
         Choice::Cheapest => (vec![cheapest], None),
         Choice::Best(k) => {
-            let list = solver::best(&problem, options.goal, k).map_err(|error| match error {
-                Unsolved::TooLarge { labels } => PlanError::TooLarge { labels },
-                Unsolved::Infeasible => PlanError::TooLarge { labels: 0 },
-            })?;
+            let list = solver::best(&problem, options.goal, k)?;
             (list.into_iter().map(to_plan).collect(), None)
         }
         Choice::Drawn { seed, count, temperature } => {
@@ -121,7 +128,7 @@ fn perturbed(
     options: &PlanOptions,
     seed: u64,
     count: usize,
-) -> Result<Vec<Plan>, PlanError> {
+) -> Result<Vec<Plan>, Unsolved> {
     /// Seeds that are tried for each sequence.
     const TRIES: usize = 3;
     let mut random = Random::new(seed);
@@ -131,7 +138,7 @@ fn perturbed(
         if plans.len() == count {
             break;
         }
-        let found = plan(catalogue, &PlanOptions { seed: Some(random.bits()), ..*options })?;
+        let found = first_fit(catalogue, &PlanOptions { seed: Some(random.bits()), ..*options })?;
         if seen.insert(canonical(&found.sequence, options.shape)) {
             plans.push(found);
         }

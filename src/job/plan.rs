@@ -90,10 +90,13 @@ pub const DEFAULT_MEMORY_LIMIT: usize = 2 << 30;
 /// # Errors
 /// [`PlanError`] when the constraints cannot be met or the search is too large.
 pub fn plan(catalogue: &Catalogue, options: &PlanOptions) -> Result<Plan, PlanError> {
-    match first_fit(catalogue, options) {
-        Ok(plan) => return Ok(plan),
-        Err(Unsolved::TooLarge { labels }) => return Err(PlanError::TooLarge { labels }),
-        Err(Unsolved::Infeasible) => {}
+    first_fit(catalogue, options).map_err(|error| why(catalogue, options, error))
+}
+
+/// Why there is no sequence, when [`first_fit`] found none.
+pub(super) fn why(catalogue: &Catalogue, options: &PlanOptions, error: Unsolved) -> PlanError {
+    if let Unsolved::TooLarge { labels } = error {
+        return PlanError::TooLarge { labels };
     }
     let bin_mm = bin_mm(catalogue, options.length_mm);
     let widest = EPSILONS.iter().rev().find_map(|&epsilon| window(options.length_mm, epsilon, bin_mm));
@@ -104,24 +107,37 @@ pub fn plan(catalogue: &Catalogue, options: &PlanOptions) -> Result<Plan, PlanEr
     let longest = (problem.window.end() * 2).max((catalogue.width_mm() * 2.0 / bin_mm) as u32);
     // What is too long to be used here is as long as it is when other lengths are asked for.
     problem.widths = catalogue.pieces().iter().map(|piece| bins(piece, bin_mm)).collect();
-    Err(PlanError::Refused { refusal: solver::explain(&problem, options.goal, longest), bin_mm })
+    PlanError::Refused { refusal: solver::explain(&problem, options.goal, longest), bin_mm }
 }
 
 /// The best sequence for the least ε with which there is one.
 pub(super) fn first_fit(catalogue: &Catalogue, options: &PlanOptions) -> Result<Plan, Unsolved> {
     let bin_mm = bin_mm(catalogue, options.length_mm);
     let mut problem = problem(catalogue, options, bin_mm);
-    for epsilon in EPSILONS {
+    let mut within = |epsilon: f64| {
         // No whole number of bins may lie so close to a short length.
-        let Some(window) = window(options.length_mm, epsilon, bin_mm) else { continue };
-        problem.window = window;
-        match solver::solve(&problem, options.goal) {
-            Err(Unsolved::Infeasible) => {}
-            Ok(solution) => return Ok(finish(catalogue, options, solution, epsilon)),
-            Err(error) => return Err(error),
+        problem.window = window(options.length_mm, epsilon, bin_mm).ok_or(Unsolved::Infeasible)?;
+        solver::solve(&problem, options.goal).map(|solution| (solution, epsilon))
+    };
+    let [first, between @ .., last] = EPSILONS;
+    let found = within(first).or_else(|error| {
+        // What cannot be had within the last cannot be had within any, so that refusals come soon.
+        let widest = match error {
+            Unsolved::Infeasible => within(last),
+            Unsolved::TooLarge { .. } => return Err(error),
+        };
+        if widest == Err(Unsolved::Infeasible) {
+            return widest;
         }
-    }
-    Err(Unsolved::Infeasible)
+        for epsilon in between {
+            match within(epsilon) {
+                Err(Unsolved::Infeasible) => {}
+                found => return found,
+            }
+        }
+        widest
+    });
+    found.map(|(solution, epsilon)| finish(catalogue, options, solution, epsilon))
 }
 
 pub(super) fn finish(catalogue: &Catalogue, options: &PlanOptions, solution: Solution, epsilon: f64) -> Plan {

@@ -2,14 +2,14 @@
 
 use super::bridging;
 use super::builder::BandJob;
-use super::choice::{Choice, Chosen, choose};
+use super::choice::{Choice, Chosen, choose, chosen};
 use super::cut::Cut;
 use super::error::JobError;
-use super::plan::{Plan, PlanError, PlanOptions, first_fit};
+use super::plan::{Plan, PlanError, PlanOptions, first_fit, why};
 use super::refusal;
 use super::stage::{Clock, Stage};
 use crate::domain::BandMap;
-use crate::solver::Tally;
+use crate::solver::{Tally, Unsolved};
 use crate::topology::{Shape, Topology};
 
 /// The memory of a search for what bridges could do, in bytes, when they were not asked for.
@@ -124,13 +124,11 @@ fn strictly(
     cut: &mut Cut,
     clock: &mut Clock<'_>,
 ) -> Result<Chosen, PlanError> {
-    let chosen = clock.time(Stage::Solve, || choose(&cut.catalogue, options, choice, counted));
-    match chosen {
-        Err(PlanError::Refused { .. }) if cut.admit_all_successors() => {
-            clock.time(Stage::Solve, || choose(&cut.catalogue, options, choice, counted))
-        }
-        chosen => chosen,
+    let mut found = clock.time(Stage::Solve, || chosen(&cut.catalogue, options, choice, counted));
+    if found == Err(Unsolved::Infeasible) && cut.admit_all_successors() {
+        found = clock.time(Stage::Solve, || chosen(&cut.catalogue, options, choice, counted));
     }
+    found.map_err(|error| clock.time(Stage::Solve, || why(&cut.catalogue, options, error)))
 }
 
 fn with_topology(cut: &Cut, options: &PlanOptions, plan: Plan) -> (Plan, Topology) {
