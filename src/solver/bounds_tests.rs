@@ -10,7 +10,7 @@ use proptest::prelude::*;
 
 use super::classes::{CLASS_SIZES, Classes};
 use super::connected::Connected;
-use super::connectivity::{Connectivity, Counts};
+use super::connectivity::{Connectivity, Counts, NODE_LIMIT};
 use super::counts::{Caps, counts, ranges};
 use super::estimates::{Estimates, Level};
 use super::family::{Family, families, scopes};
@@ -217,7 +217,7 @@ impl<'a> Case<'a> {
         let Self { problem, goal, .. } = *self;
         let labels = self.labels(scope);
         let mut states = Automaton::new(problem.descriptors, goal, problem.shape);
-        if let Some(connected) = Connected::new(problem, goal, scope) {
+        if let Some(connected) = Connected::new(problem, goal, scope, NODE_LIMIT) {
             let mut estimates = Estimates::of_connected(connected);
             self.check_estimates("counts at a price", automaton, &labels, false, &mut estimates)?;
             estimates.learn_prices(problem, &mut states, scope);
@@ -301,7 +301,7 @@ fn check_counts(problem: &Problem<'_>, runs: &Runs, scope: &Scope) -> Result<(),
     let met: Vec<Topology> =
         runs.complete(problem).filter(|(run, _)| is_first(run.first)).map(|(_, t)| t).collect();
     let is_open = problem.shape == Shape::Open;
-    let graph = Connectivity::new(problem, Goal::default(), scope).expect("the problem is small");
+    let graph = Connectivity::new(problem, Goal::default(), scope, NODE_LIMIT).expect("the problem is small");
     let found = ranges(problem, &graph);
     prop_assert!(found.is_some() || met.is_empty());
     prop_assert!(found.is_none() || !is_open || !met.is_empty());

@@ -10,8 +10,9 @@
 //! a smaller estimate than the answer, the answer is the optimum; otherwise a run that was dropped may have
 //! stood for one that stays in the band, and the walks are taken again with the drift in the state.
 //!
-//! After the work of as many labels as the memory limit holds, a beam finds a run if it can. The last threshold at which nothing was found says how
-//! far from the optimum that may be.
+//! After the work of as many labels as the memory limit holds, a beam finds a run if it can. The last threshold at
+//! which nothing was found says how far from the optimum that may be. It is the work that is counted and not the labels
+//! that are left, so that the limit bounds the time as well.
 
 use super::estimates::Level;
 use super::family::{Family, families};

@@ -39,12 +39,12 @@ pub(super) struct Connected {
 }
 
 impl Connected {
-    /// The estimates for the numbers that `goal` wants; `None` when it wants none, and when there are too many ways
-    /// of being connected.
-    pub(super) fn new(problem: &Problem<'_>, goal: Goal, scope: &Scope) -> Option<Self> {
+    /// The estimates for the numbers that `goal` wants; `None` when it wants none, and when there are more than `limit`
+    /// pairs of piece and connections.
+    pub(super) fn new(problem: &Problem<'_>, goal: Goal, scope: &Scope, limit: usize) -> Option<Self> {
         let wanted = [(Priced::Components, goal.components), (Priced::Holes, goal.holes)];
         let wanted = wanted.into_iter().filter_map(|(priced, wanted)| Some((priced, wanted?)));
-        let graph = Connectivity::new(problem, goal, scope)?;
+        let graph = Connectivity::new(problem, goal, scope, limit)?;
         let estimate = |(priced, wanted): (Priced, Wanted)| {
             let mut passes = Passes::new(problem, counted(problem, scope, &graph, priced))?;
             let bounds = i64::from(wanted.least())..=i64::from(wanted.most());

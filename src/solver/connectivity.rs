@@ -46,13 +46,13 @@ pub(super) struct Connectivity {
     known: FxHashMap<Descriptor, u32>,
 }
 
-/// Nodes at which the graph is given up.
-const NODE_LIMIT: usize = 30_000;
+/// Nodes at which a graph is given up that is made once.
+pub(super) const NODE_LIMIT: usize = 30_000;
 
 impl Connectivity {
     /// The graph of all runs within `scope` of which the goal does not rule out a join by itself; `None` when
-    /// it is too large.
-    pub(super) fn new(problem: &Problem<'_>, goal: Goal, scope: &Scope) -> Option<Self> {
+    /// it has more than `limit` nodes.
+    pub(super) fn new(problem: &Problem<'_>, goal: Goal, scope: &Scope, limit: usize) -> Option<Self> {
         let mut graph = Self {
             pieces: Vec::new(),
             edges: Vec::new(),
@@ -76,7 +76,7 @@ impl Connectivity {
         let mut at = 0;
         while let Some(&(piece, state)) = queue.get(at) {
             at += 1;
-            if queue.len() > NODE_LIMIT {
+            if queue.len() > limit {
                 return None;
             }
             graph.first_edge.push(graph.edges.len() as u32);

@@ -98,7 +98,7 @@ impl Estimates {
             (false, coarser) => Classes::new(problem, automaton.goal(), scope, limit, coarser),
         };
         self.connected = match (self.exact.is_none() && self.classes.is_none(), self.connected.take()) {
-            (true, None) => Connected::new(problem, automaton.goal(), scope),
+            (true, None) => Connected::new(problem, automaton.goal(), scope, limit),
             (true, known) => known,
             (false, _) => None,
         };

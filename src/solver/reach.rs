@@ -4,7 +4,7 @@
 //! component the coarsest, for no holes the finest. Most goals that an exemplar cannot meet fall here, without
 //! a look at a single length. Goals without dominance have the graph of [`super::counts`].
 
-use super::connectivity::{Connectivity, Counts};
+use super::connectivity::{Connectivity, Counts, NODE_LIMIT};
 use super::counts::{Caps, Ranges, counts, ranges};
 use super::graph::Scope;
 use super::problem::Problem;
@@ -47,7 +47,7 @@ pub(super) fn is_never(problem: &Problem<'_>, automaton: &mut Automaton<'_>, sco
 /// Whether no run within `scope` of an accepted length has counts that meet the goal, as far as the graph of
 /// connections knows. `false` also when that was not found out.
 pub(super) fn is_out_of_range(problem: &Problem<'_>, goal: Goal, scope: &Scope) -> bool {
-    let Some(graph) = Connectivity::new(problem, goal, scope) else { return false };
+    let Some(graph) = Connectivity::new(problem, goal, scope, NODE_LIMIT) else { return false };
     let Some(Ranges { least, most }) = ranges(problem, &graph) else { return true };
     let is_off = |wanted: Option<Wanted>, least, most| {
         wanted.is_some_and(|wanted| wanted.most() < least || wanted.least() > most)
