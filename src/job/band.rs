@@ -14,9 +14,9 @@ use super::extrude::{check_stl, name};
 use super::output::{Format, Output, Pending, Target, persist};
 use super::part::{Part, PartError};
 use super::plan::Plan;
-use super::planning::plan_runs;
 use super::report::{BandReport, InputReport};
 use super::stage::{Clock, Stage};
+use super::ways::{Runs, ways, weighed, weighed_note};
 use crate::domain::{BandMap, CurveSpec, PlanarCurve};
 use crate::exemplar::{Limits, read_path};
 use crate::export::{self, SvgDocument, SvgOptions};
@@ -108,17 +108,47 @@ impl Band {
         let half = cut.height_mm / 2.0;
         // Where the band cannot lie is found before the search, not after it.
         let map = clock.time(Stage::Map, || BandMap::new(curve, -half, half))?;
-        let runs = plan_runs(job, &mut cut, &map, &mut clock)?;
+        let ways = ways(job, &mut cut, &map, &mut clock)?;
+        let mut refusal = None;
+        for (number, way) in ways.iter().enumerate() {
+            let made = way
+                .runs(job, &cut, &map, &mut clock)
+                .and_then(|runs| Self::follow(runs, job, &cut, &map, curve_input.as_ref(), &mut clock));
+            match made {
+                Ok((mut bands, is_fine_enough)) => {
+                    let weighed = weighed(&ways, number);
+                    for report in bands.iter_mut().map(|band| &mut band.report) {
+                        report.made.notes.extend(weighed_note(&weighed));
+                        report.weighed.clone_from(&weighed);
+                    }
+                    return Ok((bands, is_fine_enough));
+                }
+                // Another way may have a place for its bridges, or need none.
+                Err(error) => refusal = refusal.or(Some(error)),
+            }
+        }
+        Err(refusal.expect("there is a way, and it either succeeds or fails"))
+    }
+
+    /// The bands that follow the sequences of one way, and whether their drawings have the counts of their parts.
+    fn follow(
+        runs: Runs,
+        job: &BandJob,
+        cut: &Cut,
+        map: &BandMap,
+        curve_input: Option<&InputReport>,
+        clock: &mut Clock<'_>,
+    ) -> Result<(Vec<Self>, bool), JobError> {
         let mut bands = Vec::with_capacity(runs.plans.len());
         let mut is_fine_enough = true;
         for (plan, planned) in runs.plans {
-            let mut band = Self::made(job, &cut, plan, planned, &map, curve_input.clone(), &mut clock)?;
+            let mut band = Self::made(job, cut, plan, planned, map, curve_input.cloned(), clock)?;
             if let Some(width_mm) = runs.bridge_mm {
-                let inside = bridging::inside(&map).map(|p| p + band.part.shift_mm);
+                let inside = bridging::inside(map).map(|p| p + band.part.shift_mm);
                 clock.time(Stage::Bridge, || band.lay_bridges(width_mm, inside))?;
             }
             // A drawing that does not pass is left for `deliver` to tell of, which knows the name of its file.
-            if let Err(JobError::Mismatch { mismatch, .. }) = band.pass(&mut clock) {
+            if let Err(JobError::Mismatch { mismatch, .. }) = band.pass(clock) {
                 is_fine_enough &= !matches!(mismatch, Mismatch::Components { .. } | Mismatch::Holes { .. });
             }
             band.report.made.times.clone_from(&clock.times);

@@ -46,6 +46,7 @@ mod rect_tile;
 mod refusal;
 mod report;
 mod stage;
+mod ways;
 
 pub use crate::reeb::KeptRange;
 pub use band::Band;
@@ -69,6 +70,7 @@ pub use report::{
     StitchReport,
 };
 pub use stage::Stage;
+pub use ways::WayReport;
 
 pub use crate::fit::StitchMethod;
 pub use crate::topology::{Wanted, WantedError};
