@@ -160,9 +160,8 @@ pub fn bridge(region: &Region, wanted: Counts, options: &BridgeOptions) -> Resul
         (BridgeKind::Split, wanted.components.saturating_sub(has.components)),
     ];
     let mut bridged = Bridged { region: region.clone(), bridges: Vec::new() };
-    let effort = Effort::new();
     for (kind, count) in steps.into_iter().filter(|(_, count)| *count > 0) {
-        let laid = lay::lay(&bridged.region, kind, count, options, &effort)?;
+        let laid = lay::lay(&bridged.region, kind, count, options, &Effort::new(count))?;
         bridged.region = laid.region;
         bridged.bridges.extend(laid.bridges);
     }

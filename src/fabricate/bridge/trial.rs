@@ -26,7 +26,7 @@ pub(super) const REQUIRED: usize = GRADES.len();
 /// What every bridge withstands, in chord errors: two of half of it meet in a fitted curve.
 const LEAST_CHORDS: f64 = 0.75;
 /// The window reaches so far beyond the bridge, in widths, so that what it holds on to is seen.
-const WINDOW: f64 = 2.0;
+const WINDOW: f64 = 1.0;
 /// The required erosion is exceeded by this, as a width that just holds is lost in rounding.
 const SURPLUS: f64 = 1.02;
 /// The largest pocket that is filled, in squares of the width: more is a hole of its own.
@@ -36,8 +36,12 @@ const ARC: f64 = 0.03;
 
 /// Contours are thinned by this part of the least erosion before they are eroded.
 const THINNING: f64 = 0.1;
-/// Vertices that are eroded or dilated before the search for places is given up: some twenty seconds of it.
-const MOST_VERTICES: usize = 20_000_000;
+/// Where erosions only rank, by so much of the width: a part of those in [`GRADES`].
+const RANK_THINNING: f64 = 0.015;
+/// Vertices that are eroded or dilated before the search for places is given up, whatever is needed and for each bridge:
+/// a few seconds, and several times what a bridge mostly takes.
+const MOST_VERTICES: usize = 1_000_000;
+const MOST_VERTICES_EACH: usize = 8_000;
 
 /// What is left of the work that trying bridges may take. It is counted in vertices and not in time, so that the same
 /// drawing gives the same answer on any machine.
@@ -46,8 +50,9 @@ pub(super) struct Effort {
 }
 
 impl Effort {
-    pub(super) fn new() -> Self {
-        Self { left: Cell::new(MOST_VERTICES) }
+    /// What so many bridges may take.
+    pub(super) fn new(bridges: usize) -> Self {
+        Self { left: Cell::new(MOST_VERTICES + bridges.saturating_mul(MOST_VERTICES_EACH)) }
     }
 
     pub(super) fn is_spent(&self) -> bool {
@@ -109,8 +114,8 @@ pub(super) struct Site<'a> {
     dilation_mm: f64,
     /// Erosion and dilation of the material without which curves could not be fitted to it.
     least_mm: f64,
-    /// The contours of the ground, thinned.
-    thin: Vec<Vec<GridPoint>>,
+    /// The contours of the ground, thinned for what is required, and for what only ranks.
+    thin: [Vec<Vec<GridPoint>>; 2],
     /// Bridges laid, counter-clockwise.
     laid: Vec<Laid>,
     effort: &'a Effort,
@@ -147,8 +152,10 @@ impl<'a> Site<'a> {
             Side::Ink => (gap, feature),
         };
         let least_mm = LEAST_CHORDS * options.chord_mm;
-        let slack = ground.grid.steps(THINNING * least_mm) as f64;
-        let thin = ground.rims.iter().map(|rim| thinned(&rim.steps, slack)).collect();
+        let thin = [THINNING * least_mm, f64::max(THINNING * least_mm, RANK_THINNING * width_mm)].map(|mm| {
+            let slack = ground.grid.steps(mm) as f64;
+            ground.rims.iter().map(|rim| thinned(&rim.steps, slack)).collect()
+        });
         Self { ground, side, width_mm, erosion_mm, dilation_mm, least_mm, thin, laid: Vec::new(), effort }
     }
 
@@ -208,14 +215,15 @@ impl<'a> Site<'a> {
         let changes = (1..=purpose.most()).find(|&changes| change.serves(purpose, changes))?;
         let area_mm2 = with.area_mm2() - without.area_mm2();
         // Where they agree the two are thinned alike, as their paths are and not their contours.
-        let mut thin = self.window(low, high, |rim| &self.thin[rim]);
-        let thin_without = Region::fill(self.ground.grid, &thin, FillRule::Positive);
-        thin.extend(std::iter::once(bridge.path).chain(pockets.iter().cloned()));
-        let thin_with = Region::fill(self.ground.grid, &thin, FillRule::Positive);
+        let thin_pair = |thin: &[Vec<GridPoint>]| {
+            let mut paths = self.window(low, high, |rim| &thin[rim]);
+            let without = Region::fill(self.ground.grid, &paths, FillRule::Positive);
+            paths.extend(std::iter::once(&bridge.path).chain(&pockets).cloned());
+            [without, Region::fill(self.ground.grid, &paths, FillRule::Positive)]
+        };
         // By how many the count changes once `lost` of what is joined have vanished.
-        let withstands = |[erosion_mm, dilation_mm]: [f64; 2], lost: usize| {
-            let offsets =
-                |r: f64| Change::between(&self.offset(&thin_without, r), &self.offset(&thin_with, r));
+        let withstands = |[without, with]: &[Region; 2], [erosion_mm, dilation_mm]: [f64; 2], lost: usize| {
+            let offsets = |r: f64| Change::between(&self.offset(without, r), &self.offset(with, r));
             let holds = erosion_mm == 0.0
                 || if lost == 0 {
                     offsets(-erosion_mm).serves(purpose, changes)
@@ -228,21 +236,25 @@ impl<'a> Site<'a> {
             [self.erosion_mm, self.dilation_mm].map(|mm| mm.max(part * self.width_mm).max(self.least_mm))
         });
         let levels: Vec<[f64; 2]> = graded.chain([[self.least_mm; 2]]).collect();
+        let thin = thin_pair(&self.thin[0]);
         // What withstands more need not withstand less: walls that are gone with more hide what the bridge does to them.
-        let holds = withstands(levels[REQUIRED], 0);
-        let graded = || levels[..REQUIRED].iter().position(|&level| withstands(level, 0)).unwrap_or(REQUIRED);
-        let least = || levels[REQUIRED + 1] != levels[REQUIRED] && withstands(levels[REQUIRED + 1], 0);
+        let holds = withstands(&thin, levels[REQUIRED], 0);
+        let graded = || {
+            let thin = thin_pair(&self.thin[1]);
+            levels[..REQUIRED].iter().position(|&level| withstands(&thin, level, 0)).unwrap_or(REQUIRED)
+        };
+        let least = || levels[REQUIRED + 1] != levels[REQUIRED] && withstands(&thin, levels[REQUIRED + 1], 0);
         let grade = holds.then(graded).or_else(|| least().then_some(REQUIRED + 1));
         let grade = grade.or_else(|| {
             // What is too thin to last by itself needs no hold, as a hole that is smaller than the slit that opens it.
-            let (before, after) = (thin_without.parts(), thin_with.parts());
+            let [before, after] = [&thin[0], &thin[1]].map(Region::parts);
             let joined: Vec<&Part> = before.iter().filter(|part| !after.contains(part)).collect();
             let lasting = |&level: &[f64; 2]| {
                 let is_lost =
                     |part: &&&Part| self.offset(&alone(part, self.ground.grid), -level[0]).is_empty();
                 let lost = joined.iter().filter(is_lost).count();
                 // Without any, the answer is known.
-                lost > 0 && withstands(level, lost)
+                lost > 0 && withstands(&thin, level, lost)
             };
             if purpose == Purpose::Loop {
                 return None;
