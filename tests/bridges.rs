@@ -86,7 +86,7 @@ fn rings_with_slits_prove_themselves() {
     // Struts cannot have opened it.
     let mut tampered = report;
     for bridge in tampered["certificate"]["bridges"].as_array_mut().unwrap() {
-        bridge["kind"] = "strut".into();
+        (bridge["kind"], bridge["holes"]) = ("strut".into(), 1.into());
     }
     room.write("tampered.json", &tampered.to_string());
     let refuted = room.run("verify --certificate tampered.json out.svg");
@@ -103,4 +103,38 @@ fn rectangles_with_holes_and_bridges_have_both() {
     assert_eq!((found.components, found.holes), (1, 2));
     assert!(!room.json("out.json")["bridges"]["bridges"].as_array().unwrap().is_empty());
     room.succeeds("verify --certificate out.json out.svg");
+}
+
+/// A strand 6 mm high in waves, across the whole drawing.
+fn wave(y: f64) -> String {
+    let (n, step, height) = (8, 15.0, 6.0);
+    let mut path = format!("M0 {y} ");
+    for i in 0..n {
+        let (x, swing) = (f64::from(i) * step, if i % 2 == 0 { 6.0 } else { -6.0 });
+        let (at, end) = (y + swing, x + step);
+        path += &format!("C{} {at} {} {at} {end} {y} ", x + 5.4, x + 9.6);
+    }
+    let low = y + height;
+    path += &format!("V{low} ");
+    for i in (0..n).rev() {
+        let (x, swing) = (f64::from(i) * step, if i % 2 == 0 { 6.0 } else { -6.0 });
+        let at = low + swing;
+        path += &format!("C{} {at} {} {at} {x} {low} ", x + 9.6, x + 5.4);
+    }
+    format!("<path d='{path}Z'/>")
+}
+
+#[test]
+fn what_is_finer_than_the_chord_error_is_made_within_a_smaller_one() {
+    let room = Room::with(&[]);
+    // Two strands, and between them a seventh of the chord error.
+    room.draw("close.svg", &(wave(20.0) + &wave(26.03)));
+    let report = band(&room, "close.svg --along line:150mm --width 20mm --chord 0.2mm");
+    assert_eq!(report["components"], 2);
+    let notes = report["notes"].to_string();
+    assert!(notes.contains("made within 0.05 mm instead of 0.2 mm"), "{notes}");
+    // With room between them, within what was asked for.
+    room.draw("apart.svg", &(wave(20.0) + &wave(26.3)));
+    let report = band(&room, "apart.svg --along line:150mm --width 20mm --chord 0.2mm");
+    assert!(!report["notes"].to_string().contains("made within"));
 }

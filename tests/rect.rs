@@ -156,6 +156,8 @@ fn what_cannot_be_is_refused_by_its_name() {
         ("missing.svg --size 40x30mm", 2, "missing.svg"),
         // Separate leaves do not hang together however they are joined.
         ("leaves.svg --size 60x40mm --components 1", 3, "--bridge 1mm joins what stays apart"),
+        // Nothing is told of components, for which nobody asked.
+        ("wave.svg --size 20x15mm --width 5mm --holes 300", 3, "no sequence along 15.0 mm has 300 hole(s)"),
         // No strand leads on from one copy to the next.
         ("meander.svg --size 60x40mm --components 1 --tile", 3, "no cut crosses its ink"),
     ] {

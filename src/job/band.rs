@@ -184,7 +184,14 @@ impl Band {
             bridging::options(width_mm, &self.job.tolerances, inside.filter(|_| goal.closed_pattern));
         let bridged = bridging::bridged(&self.part.region, goal, &options)?;
         let without = Counts::of(&self.part.region);
-        self.part.region = fabricate::snapped_to_f32(&bridged.region)?;
+        let region = fabricate::snapped_to_f32(&bridged.region)?;
+        let (low, high) = region.bounds_mm().unwrap_or_default();
+        if low.cmplt(DVec2::ZERO).any() || high.cmpgt(self.part.page_mm).any() {
+            return Err(JobError::Refused(format!(
+                "bridges {width_mm} mm wide would reach beyond the page of the band; give --bridge a smaller width"
+            )));
+        }
+        self.part.region = region;
         self.counts = Counts::of(&self.part.region);
         let bridges = BridgesReport::new(without, bridged.bridges);
         let report = &mut self.report;

@@ -72,7 +72,7 @@ pub(super) struct Found {
 }
 
 /// How much a failure tells: whether it is one of what was asked for, not of what was only tried for it; whether it is
-/// one of a second pass; and whether it is a refusal and not a way that came out wrong.
+/// one of a second pass; and whether it is a refusal with its reason and not a way that came out wrong.
 type Telling = (bool, bool, bool);
 
 /// Tries one way after another.
@@ -212,7 +212,7 @@ impl Search<'_, '_> {
                 Err(error) => {
                     self.attempts.push(Attempt::first(&strips.job(wish), error.to_string()));
                     // What no strip can be at all is nobody's wish; the rest is only tried.
-                    self.note((wish.goal.is_free(), false), error);
+                    self.note((wish.goal.is_free(), false, matches!(error, JobError::Refused(_))), error);
                     continue;
                 }
             };
@@ -252,7 +252,8 @@ impl Search<'_, '_> {
             if let JobError::Bridge(why) = &error {
                 self.unbridged.get_or_insert_with(|| why.clone());
             }
-            self.note((self.is_own(wish.goal), true), error);
+            let has_reason = wish.explained && matches!(error, JobError::Refused(_));
+            self.note((self.is_own(wish.goal), true, has_reason), error);
         })
         .ok()
     }
@@ -268,8 +269,7 @@ impl Search<'_, '_> {
     }
 
     /// The first of those counts that tell most.
-    fn note(&mut self, (is_own, is_second): (bool, bool), error: JobError) {
-        let telling = (is_own, is_second, matches!(error, JobError::Refused(_)));
+    fn note(&mut self, telling: Telling, error: JobError) {
         if self.error.as_ref().is_none_or(|(known, _)| telling > *known) {
             self.error = Some((telling, error));
         }

@@ -52,6 +52,8 @@ pub(super) struct Way {
     chosen: Chosen,
     /// Whether `chosen` has no more than the cheapest of those that the job takes.
     is_first_only: bool,
+    /// What the cheapest adds up to.
+    planned: Topology,
     bridges: u32,
     total_cost: f64,
 }
@@ -83,7 +85,9 @@ pub(super) fn ways(
     }
     match strictly(&options, job.options.choice, job.options.counted, cut, clock) {
         Ok(chosen) => {
-            Ok(vec![Way { goal: options.goal, chosen, is_first_only: false, bridges: 0, total_cost: 0.0 }])
+            let planned = with_topology(cut, &options, chosen.plans[0].clone()).1;
+            let goal = options.goal;
+            Ok(vec![Way { goal, chosen, is_first_only: false, planned, bridges: 0, total_cost: 0.0 }])
         }
         Err(error) => {
             let hint = hint(&error, &options, cut, clock);
@@ -134,11 +138,11 @@ fn bridged_ways(
     let goal = options.goal;
     let price = BRIDGE_JUMPS * job.options.weights.jump.max(CostWeights::default().jump);
     let way = |held: Goal, plan: Plan, cut: &Cut| {
-        let (plan, topology) = with_topology(cut, options, plan);
-        let bridges = bridges(goal, topology);
+        let (plan, planned) = with_topology(cut, options, plan);
+        let bridges = bridges(goal, planned);
         let total_cost = plan.cost + price * f64::from(bridges);
         let chosen = Chosen { plans: vec![plan], ln_sequences: None, is_exact: None };
-        Way { goal: held, chosen, is_first_only: true, bridges, total_cost }
+        Way { goal: held, chosen, is_first_only: true, planned, bridges, total_cost }
     };
     // The time is better spent on what bridges need than on a search that may be for nothing.
     let strict = PlanOptions { memory_limit: options.memory_limit / STRICT_PART, ..*options };
@@ -161,7 +165,8 @@ fn bridged_ways(
         let bound = least.chosen.plans[0].cost + price;
         let is_beaten = |ways: &[Way]| ways.iter().any(|way| way.total_cost <= bound);
         for &part in parts {
-            if !is_beaten(&ways) && least.total_cost > bound {
+            // What meets a part of the goal though it is free is the best of those that are held to it.
+            if !is_beaten(&ways) && least.total_cost > bound && !part.admits(least.planned) {
                 ways.extend(
                     plan_for(options, part, memory_limit, cut, clock).map(|plan| way(part, plan, cut)),
                 );
