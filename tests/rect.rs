@@ -144,7 +144,7 @@ fn certificates_of_rectangles_replay_on_their_own_files() {
 
 #[test]
 fn what_cannot_be_is_refused_by_its_name() {
-    let room = Room::with(&["vine.svg", "leaves.svg", "meander.svg"]);
+    let room = Room::with(&["vine.svg", "leaves.svg", "meander.svg", "wave.svg"]);
     let before = room.contents();
     for (arguments, code, says) in [
         ("vine.svg --size 120", 2, "such as 120x80mm"),

@@ -167,12 +167,11 @@ fn bridged_ways(
         for &part in parts {
             // What meets a part of the goal though it is free is the best of those that are held to it.
             if !is_beaten(&ways) && least.total_cost > bound && !part.admits(least.planned) {
-                ways.extend(
-                    plan_for(options, part, memory_limit, cut, clock).map(|plan| way(part, plan, cut)),
-                );
+                let plan = plan_for(options, part, memory_limit, cut, clock);
+                add(&mut ways, plan.map(|plan| way(part, plan, cut)));
             }
         }
-        ways.push(least);
+        add(&mut ways, Some(least));
     }
     // A stable sort: of equal ones, the one that needs fewer bridges.
     ways.sort_by(|a, b| a.total_cost.total_cmp(&b.total_cost).then(a.bridges.cmp(&b.bridges)));
@@ -180,6 +179,15 @@ fn bridged_ways(
         Some(error) if ways.is_empty() => Err(refused(error, cut, options, "")),
         _ => Ok(ways),
     }
+}
+
+/// Adds a way, unless one that is known needs as many bridges and costs no more: mostly it is the same.
+fn add(ways: &mut Vec<Way>, way: Option<Way>) {
+    let is_new = |way: &Way| {
+        !ways.iter().any(|known| known.bridges == way.bridges && known.total_cost <= way.total_cost)
+    };
+    let way = way.filter(is_new);
+    ways.extend(way);
 }
 
 /// How many bridges a run needs for a goal: each changes one count by one.
