@@ -36,7 +36,7 @@ pub struct WayReport {
     pub components: Option<[u32; 2]>,
     /// The holes that the sequence was held to.
     pub holes: Option<[u32; 2]>,
-    /// The cost of the sequence (Zhou 2014 §3.6.1, with jumps and rises).
+    /// The cost of the cheapest such sequence (Zhou 2014 §3.6.1, with jumps and rises).
     pub cost: f64,
     /// The bridges that it needs.
     pub bridges: u32,

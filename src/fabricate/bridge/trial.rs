@@ -59,7 +59,7 @@ impl Effort {
         self.left.get() == 0
     }
 
-    fn spend(&self, vertices: usize) {
+    pub(super) fn spend(&self, vertices: usize) {
         self.left.set(self.left.get().saturating_sub(vertices));
     }
 }
