@@ -150,7 +150,7 @@ fn certificates_of_rectangles_replay_on_their_own_files() {
 
 #[test]
 fn what_cannot_be_is_refused_by_its_name() {
-    let room = Room::with(&["vine.svg", "leaves.svg", "meander.svg"]);
+    let room = Room::with(&["vine.svg", "leaves.svg", "meander.svg", "wave.svg"]);
     let before = room.contents();
     for (arguments, code, says) in [
         ("vine.svg --size 120", 2, "such as 120x80mm"),
@@ -163,6 +163,8 @@ fn what_cannot_be_is_refused_by_its_name() {
         ("missing.svg --size 40x30mm", 2, "missing.svg"),
         // Separate leaves do not hang together however they are joined.
         ("leaves.svg --size 60x40mm --components 1", 3, "--bridge 1mm joins what stays apart"),
+        // Nothing is told of components, for which nobody asked.
+        ("wave.svg --size 20x15mm --width 5mm --holes 300", 3, "no sequence along 15.0 mm has 300 hole(s)"),
         // No strand leads on from one copy to the next.
         ("meander.svg --size 60x40mm --components 1 --tile", 3, "no cut crosses its ink"),
     ] {

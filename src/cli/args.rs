@@ -208,8 +208,9 @@ pub(super) struct PatternArguments {
     /// Thickness of the solid
     #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "2mm", allow_hyphen_values = true)]
     pub(super) thickness: f64,
-    /// Where the ornament cannot give the components or holes asked for, join components by struts and open holes
-    /// by slits of this width, as few and as short as can be [default: refuse]
+    /// Join components by struts and open holes by slits of this width, as few and as short as can be, where the ornament
+    /// cannot give the components or holes asked for, or only with many jumps: a bridge costs as much as half a jump
+    /// [default: none, and what cannot be is refused]
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(super) bridge: Option<f64>,
     #[command(flatten)]

@@ -15,9 +15,9 @@ use super::extrude::{check_stl, file_name, name};
 use super::output::{Format, Output, Pending, Target, persist};
 use super::part::{Part, PartError};
 use super::plan::Plan;
-use super::planning::plan_runs;
 use super::report::{BandReport, InputReport};
 use super::stage::{Clock, Stage};
+use super::ways::{Runs, ways, weighed, weighed_note};
 use crate::domain::{BandMap, CurveSpec, PlanarCurve};
 use crate::exemplar::{Limits, read_path};
 use crate::export::{self, SvgDocument, SvgOptions};
@@ -109,20 +109,50 @@ impl Band {
         let half = cut.height_mm / 2.0;
         // Where the band cannot lie is found before the search, not after it.
         let map = clock.time(Stage::Map, || BandMap::new(curve, -half, half))?;
-        let runs = plan_runs(job, &mut cut, &map, &mut clock)?;
+        let ways = ways(job, &mut cut, &map, &mut clock)?;
+        let mut refusal = None;
+        for (number, way) in ways.iter().enumerate() {
+            let made = way
+                .runs(job, &cut, &map, &mut clock)
+                .and_then(|runs| Self::follow(runs, job, &cut, &map, curve_input.as_ref(), &mut clock));
+            match made {
+                Ok((mut bands, is_fine_enough)) => {
+                    let weighed = weighed(&ways, number);
+                    for report in bands.iter_mut().map(|band| &mut band.report) {
+                        report.made.notes.extend(weighed_note(&weighed));
+                        report.weighed.clone_from(&weighed);
+                    }
+                    return Ok((bands, is_fine_enough));
+                }
+                // Another way may have a place for its bridges, or need none.
+                Err(error) => refusal = refusal.or(Some(error)),
+            }
+        }
+        Err(refusal.expect("there is a way, and it either succeeds or fails"))
+    }
+
+    /// The bands that follow the sequences of one way, and whether their drawings have the counts of their parts.
+    fn follow(
+        runs: Runs,
+        job: &BandJob,
+        cut: &Cut,
+        map: &BandMap,
+        curve_input: Option<&InputReport>,
+        clock: &mut Clock<'_>,
+    ) -> Result<(Vec<Self>, bool), JobError> {
         let mut bands = Vec::with_capacity(runs.plans.len());
         let mut is_fine_enough = true;
         let mut prepared = Prepared::new();
         for (rank, run) in (1..).zip(runs.plans) {
-            let mut band =
-                Self::made_with(&mut prepared, job, &cut, run, &map, curve_input.clone(), &mut clock)?;
-            band.report.rank = matches!(options.choice, Choice::Best(_)).then_some(rank);
+            let curve_input = curve_input.cloned();
+            let mut band = Self::made_with(&mut prepared, job, cut, run, map, curve_input, clock)?;
+            band.report.rank = matches!(job.options.choice, Choice::Best(_)).then_some(rank);
             if let Some(width_mm) = runs.bridge_mm {
-                let inside = bridging::inside(&map).map(|p| p + band.part.shift_mm);
+                let inside = bridging::inside(map).map(|p| p + band.part.shift_mm);
                 clock.time(Stage::Bridge, || band.lay_bridges(width_mm, inside))?;
             }
             // A drawing that does not pass is left for `deliver` to tell of, which knows the name of its file.
-            if let Err(JobError::Mismatch { mismatch, .. }) = band.pass(&mut clock) {
+            if let Err(JobError::Mismatch { mismatch, .. }) = band.pass(clock) {
                 is_fine_enough &= !matches!(mismatch, Mismatch::Components { .. } | Mismatch::Holes { .. });
             }
             band.report.made.times.clone_from(&clock.times);
@@ -172,7 +202,14 @@ impl Band {
             bridging::options(width_mm, &self.job.tolerances, inside.filter(|_| goal.closed_pattern));
         let bridged = bridging::bridged(&self.part.region, goal, &options)?;
         let without = Counts::of(&self.part.region);
-        self.part.region = fabricate::snapped_to_f32(&bridged.region)?;
+        let region = fabricate::snapped_to_f32(&bridged.region)?;
+        let (low, high) = region.bounds_mm().unwrap_or_default();
+        if low.cmplt(DVec2::ZERO).any() || high.cmpgt(self.part.page_mm).any() {
+            return Err(JobError::Refused(format!(
+                "bridges {width_mm} mm wide would reach beyond the page of the band; give --bridge a smaller width"
+            )));
+        }
+        self.part.region = region;
         self.counts = Counts::of(&self.part.region);
         let bridges = BridgesReport::new(without, bridged.bridges);
         let report = &mut self.report;

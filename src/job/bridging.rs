@@ -1,12 +1,11 @@
-//! Bridges in a job: what to plan when the target cannot be had, and what to tell of the bridges that were laid.
+//! Bridges in a job: what they could do where there is no plan, and what to tell of those that were laid.
 
 use glam::DVec2;
 use serde::Serialize;
 
-use super::plan::{Plan, PlanError, PlanOptions, first_fit};
+use super::plan::PlanError;
 use crate::domain::BandMap;
 use crate::fabricate::{self, Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts};
-use crate::pieces::Catalogue;
 use crate::planar::{GridPoint, Region, Tolerances};
 use crate::solver::Refusal;
 use crate::topology::{Goal, Topology, Wanted};
@@ -78,32 +77,6 @@ pub(super) fn can_help(error: &PlanError) -> bool {
             matches!(refusal, Refusal::Components { .. } | Refusal::Holes { .. } | Refusal::Both { .. })
         }
     }
-}
-
-/// The best plan that meets as much of the goal as can be met, and what it meets: the components rather than the
-/// holes, as slits across strands show less than struts across gaps.
-pub(super) fn relaxed_plan(
-    catalogue: &Catalogue,
-    options: &PlanOptions,
-    memory_limit: usize,
-) -> Option<(Goal, Plan)> {
-    let goal = options.goal;
-    let mut tried = vec![goal];
-    [
-        Goal { holes: None, ..goal },
-        Goal { components: None, ..goal },
-        Goal { components: None, holes: None, ..goal },
-    ]
-    .into_iter()
-    .filter(|&goal| {
-        let is_new = !tried.contains(&goal);
-        tried.push(goal);
-        is_new
-    })
-    .find_map(|goal| {
-        let plan = first_fit(catalogue, &PlanOptions { goal, memory_limit, ..*options });
-        plan.ok().map(|plan| (goal, plan))
-    })
 }
 
 /// The counts nearest to those of a part that has `has` that the goal allows.

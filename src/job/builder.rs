@@ -205,9 +205,9 @@ impl BandBuilder {
         self
     }
 
-    /// The width of bridges: where the ornament cannot give the components or holes that are asked for, struts of
-    /// this width join components and slits of this width open holes. Without it there are none, and such a job
-    /// is refused.
+    /// The width of bridges: where the ornament cannot give the components or holes that are asked for, or only at a
+    /// higher cost than with bridges, struts of this width join components and slits of this width open holes. A
+    /// bridge costs as much as half a jump. Without a width there are none, and what cannot be had is refused.
     pub fn bridge_mm(mut self, width_mm: f64) -> Self {
         self.bridge_mm = Some(width_mm);
         self

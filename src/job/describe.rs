@@ -94,6 +94,7 @@ pub(super) fn describe(
         squash: outline.squash,
         squeezes: map.squeezes().to_vec(),
         bridges: None,
+        weighed: Vec::new(),
         seams: SeamReport {
             count: outline.seams.len(),
             jumps: outline.seams.iter().filter(|s| !s.is_natural).count(),

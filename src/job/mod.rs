@@ -49,6 +49,7 @@ mod refusal;
 mod report;
 mod several;
 mod stage;
+mod ways;
 
 pub use crate::reeb::KeptRange;
 pub use band::Band;
@@ -74,6 +75,7 @@ pub use report::{
 };
 pub use several::write_numbered;
 pub use stage::Stage;
+pub use ways::WayReport;
 
 pub use crate::fit::StitchMethod;
 pub use crate::topology::{Wanted, WantedError};

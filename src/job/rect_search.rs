@@ -19,6 +19,7 @@ use super::rect_strip::{Strip, Strips, Wish, cuts_mm, flat_map};
 use super::stage::{Clock, Stage};
 use crate::domain::BandMap;
 use crate::exemplar::Exemplar;
+use crate::fabricate::BridgeError;
 use crate::topology::{Goal, Wanted};
 
 /// Where no height is asked for, rows are at most this part of the rectangle's height. Larger, and there are too
@@ -43,7 +44,9 @@ const ROWS_MISFIT: f64 = 2.0;
 const SPLITS: usize = 2;
 /// The most ways that are tried at one bar and height. More, and a refusal takes longer than anyone waits for it.
 const MOST_ATTEMPTS: usize = 4;
-/// The same for tiles, whose ways take longer and have more in common.
+/// The most that are tried for what is only preferred to what was asked for.
+const MOST_PREFERRED: usize = 2;
+/// The same as [`MOST_ATTEMPTS`] for tiles, whose ways take longer and have more in common.
 const MOST_TILE_ATTEMPTS: usize = 3;
 
 /// Which joins are accepted.
@@ -68,9 +71,9 @@ pub(super) struct Found {
     pub(super) exemplar: Exemplar,
 }
 
-/// How much a failure tells: whether it is one of a second pass, and whether it is a refusal and not a way that came
-/// out wrong.
-type Telling = (bool, bool);
+/// How much a failure tells: whether it is one of what was asked for, not of what was only tried for it; whether it is
+/// one of a second pass; and whether it is a refusal with its reason and not a way that came out wrong.
+type Telling = (bool, bool, bool);
 
 /// Tries one way after another.
 struct Search<'a, 'c> {
@@ -85,6 +88,8 @@ struct Search<'a, 'c> {
     bridge_mm: Option<f64>,
     /// The failure that tells most, and how much.
     error: Option<(Telling, JobError)>,
+    /// Why the first bridges could not be laid.
+    unbridged: Option<BridgeError>,
 }
 
 /// The first way that comes out right.
@@ -95,8 +100,16 @@ pub(super) fn search(job: &RectJob, clock: &mut Clock<'_>) -> Result<Found, JobE
         .into_iter()
         .map(|height_mm| Strips::new(job, height_mm, clock))
         .collect::<Result<Vec<_>, _>>()?;
-    let mut search =
-        Search { job, map, clock, attempts: Vec::new(), allowed: 0, bridge_mm: None, error: None };
+    let mut search = Search {
+        job,
+        map,
+        clock,
+        attempts: Vec::new(),
+        allowed: 0,
+        bridge_mm: None,
+        error: None,
+        unbridged: None,
+    };
     let goals = goals(job);
     let bridge_mm = job.band.options.bridge_mm;
     let relaxed = relaxed_goals(job);
@@ -104,7 +117,7 @@ pub(super) fn search(job: &RectJob, clock: &mut Clock<'_>) -> Result<Found, JobE
         if let Some(found) = search.at_bar(&mut heights, &goals, bar) {
             return Ok(found);
         }
-        if bridge_mm.is_some() {
+        if bridge_mm.is_some() && !search.has_given_bridges_up() {
             search.bridge_mm = bridge_mm;
             if let Some(found) = search.at_bar(&mut heights, &relaxed, bar) {
                 return Ok(found);
@@ -155,8 +168,10 @@ impl Search<'_, '_> {
     fn at_bar(&mut self, heights: &mut [Strips], goals: &[Goal], bar: Bar) -> Option<Found> {
         let most = if self.job.tile { MOST_TILE_ATTEMPTS } else { MOST_ATTEMPTS };
         for strips in heights {
-            self.allowed = self.attempts.len() + most;
             for &goal in goals {
+                let is_preferred = self.bridge_mm.is_none() && !self.is_own(goal);
+                self.allowed =
+                    self.attempts.len() + if is_preferred { MOST_PREFERRED.min(most) } else { most };
                 if let Some(found) = self.over_strips(strips, goal, bar) {
                     return Some(found);
                 }
@@ -174,7 +189,7 @@ impl Search<'_, '_> {
         let seeds: Vec<Option<u64>> = match given {
             Some(_) => vec![given],
             // Where one component is only preferred, other strips are not worth the time.
-            None if goal != self.job.band.options.goal => vec![None],
+            None if !self.is_own(goal) => vec![None],
             None => std::iter::once(None).chain(SEEDS.map(Some)).collect(),
         };
         let mut wishes = Vec::new();
@@ -185,7 +200,9 @@ impl Search<'_, '_> {
             }
         }
         for wish in wishes {
-            if self.attempts.len() >= self.allowed {
+            if self.attempts.len() >= self.allowed
+                || (self.bridge_mm.is_some() && self.has_given_bridges_up())
+            {
                 return None;
             }
             let strip = match strips.get(wish, self.clock) {
@@ -193,11 +210,13 @@ impl Search<'_, '_> {
                 Ok(None) => continue,
                 Err(error) => {
                     self.attempts.push(Attempt::first(&strips.job(wish), error.to_string()));
-                    self.note(false, error);
+                    // What no strip can be at all is nobody's wish; the rest is only tried.
+                    self.note((wish.goal.is_free(), false, matches!(error, JobError::Refused(_))), error);
                     continue;
                 }
             };
-            let explained = self.error.as_ref().is_none_or(|((is_second, _), _)| !is_second);
+            let told = self.error.as_ref().is_some_and(|&((is_own, is_second, _), _)| is_own && is_second);
+            let explained = self.is_own(goal) && !told;
             for split in 0..if self.job.tile { SPLITS } else { 1 } {
                 let rows =
                     RowsWish { goal, worst_misfit: worst_misfit.min(ROWS_MISFIT), scraps, explained, split };
@@ -229,14 +248,27 @@ impl Search<'_, '_> {
             if let Some(attempt) = self.attempts.last_mut() {
                 attempt.outcome = error.to_string();
             }
-            self.note(true, error);
+            if let JobError::Bridge(why) = &error {
+                self.unbridged.get_or_insert_with(|| why.clone());
+            }
+            let has_reason = wish.explained && matches!(error, JobError::Refused(_));
+            self.note((self.is_own(wish.goal), true, has_reason), error);
         })
         .ok()
     }
 
+    /// Whether rows with this goal are what was asked for.
+    fn is_own(&self, goal: Goal) -> bool {
+        goal == self.job.band.options.goal
+    }
+
+    /// Whether bridges took too long to look for: over other rows they would again.
+    fn has_given_bridges_up(&self) -> bool {
+        matches!(self.unbridged, Some(BridgeError::TooMuch { .. }))
+    }
+
     /// The first of those counts that tell most.
-    fn note(&mut self, is_second: bool, error: JobError) {
-        let telling = (is_second, matches!(error, JobError::Refused(_)));
+    fn note(&mut self, telling: Telling, error: JobError) {
         if self.error.as_ref().is_none_or(|(known, _)| telling > *known) {
             self.error = Some((telling, error));
         }
@@ -245,14 +277,19 @@ impl Search<'_, '_> {
     fn refusal(self) -> JobError {
         let ways = self.attempts.len();
         let options = &self.job.band.options;
-        let can_bridge = options.bridge_mm.is_none() && options.goal.components.is_some() && !self.job.tile;
+        let can_bridge = options.bridge_mm.is_none() && !self.job.tile;
+        let remedy = match (self.unbridged, options.goal.components, options.goal.holes) {
+            (Some(why), ..) => format!("; and with bridges, {why}"),
+            (None, Some(_), _) if can_bridge => ", and --bridge 1mm joins what stays apart".to_owned(),
+            (None, None, Some(_)) if can_bridge => ", and --bridge 1mm opens and closes holes".to_owned(),
+            _ => String::new(),
+        };
         match self.error {
-            Some(((true, _), JobError::Refused(why))) => JobError::Refused(format!(
-                "no rectangle of {}: {ways} way(s) of making it were tried; of the first, whose rows are the pieces, {why}; another --width may help{}",
-                self.job.size,
-                if can_bridge { ", and --bridge 1mm joins what stays apart" } else { "" }
+            Some(((_, true, _), JobError::Refused(why))) => JobError::Refused(format!(
+                "no rectangle of {}: {ways} way(s) of making it were tried; of the first, whose rows are the pieces, {why}; another --width may help{remedy}",
+                self.job.size
             )),
-            Some(((false, _), JobError::Refused(why))) => JobError::Refused(format!(
+            Some(((_, false, _), JobError::Refused(why))) => JobError::Refused(format!(
                 "no rectangle of {}: no strip as long as it is wide: {why}",
                 self.job.size
             )),

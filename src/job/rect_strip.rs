@@ -75,7 +75,9 @@ pub(super) struct Strips {
     pub(super) exemplar: Exemplar,
     tile: bool,
     map_width_mm: f64,
+    /// What was wished for, and what came of it.
     known: Vec<(Wish, Option<Strip>)>,
+    /// Wishes that no sequence meets.
     refused: Vec<Wish>,
 }
 
@@ -133,13 +135,13 @@ impl Strips {
                 Ok(strip)
             }
             Err(error) => {
-                self.refused.push(wish);
+                self.known.push((wish, None));
                 Err(error)
             }
         }
     }
 
-    fn made(&self, wish: Wish, clock: &mut Clock<'_>) -> Result<Option<Strip>, JobError> {
+    fn made(&mut self, wish: Wish, clock: &mut Clock<'_>) -> Result<Option<Strip>, JobError> {
         let mut job = self.job(wish);
         let mut slice = |job: &BandJob, region: &Region| {
             clock.time(Stage::Slice, || slice_region(job, self.exemplar.clone(), region))
@@ -155,7 +157,12 @@ impl Strips {
             join_own_copies(&mut cut, false);
         }
         let map = flat_map(self.map_width_mm, cut.height_mm)?;
-        let (plan, planned) = plan_run(&job, &mut cut, &map, clock)?;
+        let (plan, planned) = plan_run(&job, &mut cut, &map, clock).inspect_err(|error| {
+            // Whatever else is wrong depends on the sequence, and another seed gives another one.
+            if matches!(error, JobError::Refused(_)) {
+                self.refused.push(wish);
+            }
+        })?;
         let jumps = cut.catalogue.jumps_of(&plan.sequence);
         let runs = self.map_width_mm / cut.catalogue.width_mm();
         if jumps as f64 > wish.scraps * JUMPS_PER_RUN * runs.max(1.0) {

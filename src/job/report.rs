@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::bridging::BridgesReport;
 use super::certificate::Certificate;
 use super::json;
+use super::ways::WayReport;
 use crate::domain::Squeeze;
 use crate::solver::Tally;
 use crate::verify::Narrowest;
@@ -165,6 +166,8 @@ pub struct BandReport {
     /// The bridges, when the ornament alone could not give what was asked for; then `components`, `holes` and
     /// the files are with them.
     pub bridges: Option<BridgesReport>,
+    /// Where bridges were allowed: the sequences that were weighed against each other, the best first.
+    pub weighed: Vec<WayReport>,
     /// The seams.
     pub seams: SeamReport,
     /// How the pieces were bent to meet at the seams.

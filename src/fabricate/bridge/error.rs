@@ -37,6 +37,18 @@ pub enum BridgeError {
         /// How wide they are.
         width_mm: f64,
     },
+    /// The search was given up, as hardly any place will do.
+    #[error("{done} of {needed} {}; the search for places of {}s {width_mm} mm wide was given up, as nearly all that were tried would not hold; change the counts by less, or try another width or a larger chord error", what(*kind), if kind.is_strut() { "strut" } else { "slit" })]
+    TooMuch {
+        /// What the bridge was for.
+        kind: BridgeKind,
+        /// By how many the count was changed.
+        done: usize,
+        /// By how many it had to be.
+        needed: usize,
+        /// How wide they are.
+        width_mm: f64,
+    },
 }
 
 fn what(kind: BridgeKind) -> &'static str {

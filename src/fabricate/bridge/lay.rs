@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 use super::ground::{Ground, nearest_step};
 use super::links::{Link, links};
 use super::place::{Place, Prober};
-use super::trial::{Asked, Purpose, REQUIRED, Site, Verdict};
+use super::trial::{Asked, Effort, Purpose, REQUIRED, Site, Verdict};
 use super::{Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts};
 use crate::planar::{EdgeIndex, GridPoint, Region, Sets};
 
@@ -52,12 +52,13 @@ const MOST_ROUNDS: usize = 8;
 /// Middles of bridges closer than this, in widths, would overlap.
 const BESIDE: f64 = 1.2;
 
-/// `region` with `needed` bridges of one kind.
+/// `region` with `needed` bridges of one kind, if they are found with what is left of the `effort`.
 pub(super) fn lay(
     region: &Region,
     kind: BridgeKind,
     needed: usize,
     options: &BridgeOptions,
+    effort: &Effort,
 ) -> Result<Bridged, BridgeError> {
     let side = kind.side();
     let ground = Ground::new(region);
@@ -74,7 +75,7 @@ pub(super) fn lay(
     let mut banned = Vec::new();
     let mut known = Known::default();
     for _ in 0..MOST_ROUNDS {
-        let site = Site::new(&ground, side, width_mm, options);
+        let site = Site::new(&ground, side, width_mm, options, effort);
         let mut layer = Layer {
             prober,
             site,
@@ -83,6 +84,7 @@ pub(super) fn lay(
             has,
             banned: &banned,
             known: &mut known,
+            effort,
             extent_mm: low.distance(high),
             done: 0,
             bridges: Vec::new(),
@@ -98,6 +100,9 @@ pub(super) fn lay(
         }
         if !layer.is_done() {
             done = layer.done.max(done);
+            if effort.is_spent() {
+                return Err(BridgeError::TooMuch { kind, done, needed, width_mm });
+            }
             let known = hard.len();
             hard.extend(left);
             if hard.len() == known {
@@ -132,6 +137,7 @@ struct Layer<'a> {
     /// The corners of bridges that must not be laid.
     banned: &'a [[[f64; 2]; 4]],
     known: &'a mut Known,
+    effort: &'a Effort,
     extent_mm: f64,
     /// By how many the count has been changed.
     done: usize,
@@ -143,6 +149,11 @@ struct Layer<'a> {
 impl Layer<'_> {
     fn is_done(&self) -> bool {
         self.done == self.needed
+    }
+
+    /// Whether there is nothing left to do, or nothing to do it with.
+    fn is_over(&self) -> bool {
+        self.is_done() || self.effort.is_spent()
     }
 
     /// Joins the nearest nodes first (Kruskal's minimum spanning forest), but never the two of `apart`, and before all
@@ -162,13 +173,13 @@ impl Layer<'_> {
         let (mut over, mut reach) = (-1.0, self.prober.width_mm);
         // Links without a place for a bridge: when longer ones are taken, they too may take a longer way.
         let mut again: Vec<(Link, usize)> = Vec::new();
-        while !self.is_done() && (over <= self.extent_mm || !again.is_empty()) {
+        while !self.is_over() && (over <= self.extent_mm || !again.is_empty()) {
             let fresh = links(ground, side, over, reach, |a, b| meant(a, b) && sets.may_join(a, b));
             let fresh = fresh.into_iter().map(|link| (link, 0));
             for (link, number) in std::mem::take(&mut again).into_iter().chain(fresh) {
                 let [a, b] = link.rims.map(|rim| ground.node(rim, side));
                 // What lies between two contours is nearer to both: it has been tried already, and had no place.
-                if self.is_done() || !sets.may_join(a, b) || !self.prober.is_clear(link.ends) {
+                if self.is_over() || !sets.may_join(a, b) || !self.prober.is_clear(link.ends) {
                     continue;
                 }
                 let Try { detour: [part, widths], wider, is_alone, places } = TRIES[number];
@@ -195,12 +206,12 @@ impl Layer<'_> {
     fn close(&mut self) {
         let mut reach = FIRST_REACH * self.prober.width_mm;
         let mut failures = 0;
-        while !self.is_done() {
+        while !self.is_over() {
             let is_last = reach > self.extent_mm;
             let places = self.prober.loops(reach);
             for worst in [GOOD_GRADE, REQUIRED].into_iter().take(if is_last { 2 } else { 1 }) {
                 for place in &places {
-                    if self.is_done() || failures > MOST_FAILURES {
+                    if self.is_over() || failures > MOST_FAILURES {
                         return;
                     }
                     if self.is_beside(place) {

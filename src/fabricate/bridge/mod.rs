@@ -10,7 +10,8 @@
 //! Ink and gaps are dual, so there is one search for struts and slits ([`ground`]). Distances between contours
 //! are true ones ([`links`]); which place along two contours is taken is a matter of length, squareness and hold
 //! ([`place`]); every bridge is tried out in a window before it is laid, exactly and at the tolerance of a
-//! machine ([`trial`]), and the region with all of them is counted at the end.
+//! machine ([`trial`]), and the region with all of them is counted at the end. The work of trying is limited, so that
+//! a refusal takes seconds too.
 //!
 //! Excluded: filling holes and dropping islands, which changes the drawing instead of holding it together.
 
@@ -20,6 +21,7 @@ mod lay;
 mod links;
 mod loops;
 mod place;
+mod thin;
 mod trial;
 
 pub use error::BridgeError;
@@ -29,6 +31,7 @@ use serde::Serialize;
 
 use crate::planar::Region;
 use ground::Side;
+use trial::Effort;
 
 /// Components and holes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -145,7 +148,8 @@ pub struct Bridged {
 /// Nothing outside of the bridges' corners and pockets is changed. The same arguments give the same result.
 ///
 /// # Errors
-/// [`BridgeError`] for options out of range, counts that no region has, and when there is no place for a bridge.
+/// [`BridgeError`] for options out of range, counts that no region has, and when there is no place for a bridge or
+/// looking for one is given up.
 pub fn bridge(region: &Region, wanted: Counts, options: &BridgeOptions) -> Result<Bridged, BridgeError> {
     error::check(region, wanted, options)?;
     let has = Counts::of(region);
@@ -157,7 +161,7 @@ pub fn bridge(region: &Region, wanted: Counts, options: &BridgeOptions) -> Resul
     ];
     let mut bridged = Bridged { region: region.clone(), bridges: Vec::new() };
     for (kind, count) in steps.into_iter().filter(|(_, count)| *count > 0) {
-        let laid = lay::lay(&bridged.region, kind, count, options)?;
+        let laid = lay::lay(&bridged.region, kind, count, options, &Effort::new(count))?;
         bridged.region = laid.region;
         bridged.bridges.extend(laid.bridges);
     }

@@ -292,3 +292,17 @@ fn what_cannot_be_had_is_an_error() {
     assert!(text.starts_with("0 of 3 missing holes were made by closing bays; there is no place"), "{text}");
     assert_eq!(bridge(&square, counts(1, 0), &options(1.0)).unwrap().region, square);
 }
+
+#[test]
+fn without_effort_left_the_search_is_given_up_and_says_so() {
+    let apart = region(&[rectangle(0.0, 0.0, 10.0, 4.0), rectangle(12.0, 0.0, 10.0, 4.0)]);
+    let lay = |effort: &Effort| lay::lay(&apart, BridgeKind::Join, 1, &options(1.0), effort);
+    let enough = Effort::new(1);
+    assert_eq!(Counts::of(&lay(&enough).unwrap().region), counts(1, 0));
+    assert!(!enough.is_spent());
+    let spent = Effort::new(1);
+    spent.spend(usize::MAX);
+    let error = lay(&spent).unwrap_err();
+    assert_eq!(error, BridgeError::TooMuch { kind: BridgeKind::Join, done: 0, needed: 1, width_mm: 1.0 });
+    assert!(error.to_string().contains("was given up"));
+}

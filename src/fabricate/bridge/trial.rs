@@ -7,12 +7,16 @@
 //! M dilated, or it leaves a slot beside itself. In a crowd of parts a bridge may cut off small pockets: as a last
 //! resort these are filled with it (of ink: a crumb that would fall out is taken away).
 //!
-//!  How much erosion a place withstands ranks it.
+//! How much erosion a place withstands ranks it. Eroding takes nearly all of the time, so it is done with contours
+//! that are thinned as far as the least erosion allows, and it is what an [`Effort`] is counted in.
+
+use std::cell::Cell;
 
 use glam::DVec2;
 
 use super::BridgeOptions;
 use super::ground::{Ground, Side, nearest_step};
+use super::thin::thinned;
 use crate::planar::{Contour, FillRule, Grid, GridPoint, Part, Region};
 
 /// Erosions that a good bridge withstands, as parts of its width, the best first; then only what is required.
@@ -22,13 +26,43 @@ pub(super) const REQUIRED: usize = GRADES.len();
 /// What every bridge withstands, in chord errors: two of half of it meet in a fitted curve.
 const LEAST_CHORDS: f64 = 0.75;
 /// The window reaches so far beyond the bridge, in widths, so that what it holds on to is seen.
-const WINDOW: f64 = 2.0;
+const WINDOW: f64 = 1.0;
 /// The required erosion is exceeded by this, as a width that just holds is lost in rounding.
 const SURPLUS: f64 = 1.02;
 /// The largest pocket that is filled, in squares of the width: more is a hole of its own.
 const LARGEST_POCKET: f64 = 1.5;
 /// Arcs of eroded corners, as part of the radius.
 const ARC: f64 = 0.03;
+
+/// Contours are thinned by this part of the least erosion before they are eroded.
+const THINNING: f64 = 0.1;
+/// Where erosions only rank, by so much of the width: a part of those in [`GRADES`].
+const RANK_THINNING: f64 = 0.015;
+/// Vertices that are eroded or dilated before the search for places is given up, whatever is needed and for each bridge:
+/// a few seconds, and several times what a bridge mostly takes.
+const MOST_VERTICES: usize = 1_000_000;
+const MOST_VERTICES_EACH: usize = 8_000;
+
+/// What is left of the work that trying bridges may take. It is counted in vertices and not in time, so that the same
+/// drawing gives the same answer on any machine.
+pub(super) struct Effort {
+    left: Cell<usize>,
+}
+
+impl Effort {
+    /// What so many bridges may take.
+    pub(super) fn new(bridges: usize) -> Self {
+        Self { left: Cell::new(MOST_VERTICES + bridges.saturating_mul(MOST_VERTICES_EACH)) }
+    }
+
+    pub(super) fn is_spent(&self) -> bool {
+        self.left.get() == 0
+    }
+
+    pub(super) fn spend(&self, vertices: usize) {
+        self.left.set(self.left.get().saturating_sub(vertices));
+    }
+}
 
 /// What a bridge is to do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -80,8 +114,11 @@ pub(super) struct Site<'a> {
     dilation_mm: f64,
     /// Erosion and dilation of the material without which curves could not be fitted to it.
     least_mm: f64,
+    /// The contours of the ground, thinned for what is required, and for what only ranks.
+    thin: [Vec<Vec<GridPoint>>; 2],
     /// Bridges laid, counter-clockwise.
     laid: Vec<Laid>,
+    effort: &'a Effort,
 }
 
 struct Laid {
@@ -101,7 +138,13 @@ impl Laid {
 
 impl<'a> Site<'a> {
     /// Without bridges yet.
-    pub(super) fn new(ground: &'a Ground, side: Side, width_mm: f64, options: &BridgeOptions) -> Self {
+    pub(super) fn new(
+        ground: &'a Ground,
+        side: Side,
+        width_mm: f64,
+        options: &BridgeOptions,
+        effort: &'a Effort,
+    ) -> Self {
         let half = |mm: f64| 0.5 * mm * SURPLUS;
         let (feature, gap) = (half(options.min_feature_mm), half(options.min_gap_mm));
         let (erosion_mm, dilation_mm) = match side {
@@ -109,7 +152,11 @@ impl<'a> Site<'a> {
             Side::Ink => (gap, feature),
         };
         let least_mm = LEAST_CHORDS * options.chord_mm;
-        Self { ground, side, width_mm, erosion_mm, dilation_mm, least_mm, laid: Vec::new() }
+        let thin = [THINNING * least_mm, f64::max(THINNING * least_mm, RANK_THINNING * width_mm)].map(|mm| {
+            let slack = ground.grid.steps(mm) as f64;
+            ground.rims.iter().map(|rim| thinned(&rim.steps, slack)).collect()
+        });
+        Self { ground, side, width_mm, erosion_mm, dilation_mm, least_mm, thin, laid: Vec::new(), effort }
     }
 
     /// Lays a bridge and fills its pockets; how many outlines there are then.
@@ -152,10 +199,10 @@ impl<'a> Site<'a> {
     pub(super) fn try_out(&self, corners: &[DVec2; 4], purpose: Purpose) -> Option<Verdict> {
         let bridge = self.on_grid(corners);
         let [low, high] = self.window_around(&bridge);
-        let mut paths = self.window(low, high);
+        let mut paths = self.window(low, high, |rim| &self.ground.rims[rim].steps);
         let before = paths.len();
         let without = Region::fill(self.ground.grid, &paths, FillRule::Positive);
-        paths.push(bridge.path);
+        paths.push(bridge.path.clone());
         let mut with = Region::fill(self.ground.grid, &paths, FillRule::Positive);
         let mut change = Change::between(&without, &with);
         let mut pockets = Vec::new();
@@ -167,9 +214,16 @@ impl<'a> Site<'a> {
         }
         let changes = (1..=purpose.most()).find(|&changes| change.serves(purpose, changes))?;
         let area_mm2 = with.area_mm2() - without.area_mm2();
+        // Where they agree the two are thinned alike, as their paths are and not their contours.
+        let thin_pair = |thin: &[Vec<GridPoint>]| {
+            let mut paths = self.window(low, high, |rim| &thin[rim]);
+            let without = Region::fill(self.ground.grid, &paths, FillRule::Positive);
+            paths.extend(std::iter::once(&bridge.path).chain(&pockets).cloned());
+            [without, Region::fill(self.ground.grid, &paths, FillRule::Positive)]
+        };
         // By how many the count changes once `lost` of what is joined have vanished.
-        let withstands = |[erosion_mm, dilation_mm]: [f64; 2], lost: usize| {
-            let offsets = |r: f64| Change::between(&offset(&without, r), &offset(&with, r));
+        let withstands = |[without, with]: &[Region; 2], [erosion_mm, dilation_mm]: [f64; 2], lost: usize| {
+            let offsets = |r: f64| Change::between(&self.offset(without, r), &self.offset(with, r));
             let holds = erosion_mm == 0.0
                 || if lost == 0 {
                     offsets(-erosion_mm).serves(purpose, changes)
@@ -182,19 +236,29 @@ impl<'a> Site<'a> {
             [self.erosion_mm, self.dilation_mm].map(|mm| mm.max(part * self.width_mm).max(self.least_mm))
         });
         let levels: Vec<[f64; 2]> = graded.chain([[self.least_mm; 2]]).collect();
+        let thin = thin_pair(&self.thin[0]);
         // What withstands more need not withstand less: walls that are gone with more hide what the bridge does to them.
-        let holds = withstands(levels[REQUIRED], 0);
-        let graded = || levels[..REQUIRED].iter().position(|&level| withstands(level, 0)).unwrap_or(REQUIRED);
-        let least = || levels[REQUIRED + 1] != levels[REQUIRED] && withstands(levels[REQUIRED + 1], 0);
+        let holds = withstands(&thin, levels[REQUIRED], 0);
+        let graded = || {
+            let thin = thin_pair(&self.thin[1]);
+            levels[..REQUIRED].iter().position(|&level| withstands(&thin, level, 0)).unwrap_or(REQUIRED)
+        };
+        let least = || levels[REQUIRED + 1] != levels[REQUIRED] && withstands(&thin, levels[REQUIRED + 1], 0);
         let grade = holds.then(graded).or_else(|| least().then_some(REQUIRED + 1));
         let grade = grade.or_else(|| {
             // What is too thin to last by itself needs no hold, as a hole that is smaller than the slit that opens it.
-            let joined: Vec<&Part> = without.parts().iter().filter(|p| !with.parts().contains(p)).collect();
+            let [before, after] = [&thin[0], &thin[1]].map(Region::parts);
+            let joined: Vec<&Part> = before.iter().filter(|part| !after.contains(part)).collect();
             let lasting = |&level: &[f64; 2]| {
-                let lost =
-                    joined.iter().filter(|part| offset(&alone(part, self.ground.grid), -level[0]).is_empty());
-                withstands(level, if purpose == Purpose::Loop { 0 } else { lost.count() })
+                let is_lost =
+                    |part: &&&Part| self.offset(&alone(part, self.ground.grid), -level[0]).is_empty();
+                let lost = joined.iter().filter(is_lost).count();
+                // Without any, the answer is known.
+                lost > 0 && withstands(&thin, level, lost)
             };
+            if purpose == Purpose::Loop {
+                return None;
+            }
             let least = lasting(&levels[REQUIRED + 1]);
             least.then(|| if lasting(&levels[REQUIRED]) { REQUIRED } else { REQUIRED + 1 })
         })?;
@@ -221,6 +285,11 @@ impl<'a> Site<'a> {
         are_small.then(|| new.iter().map(|hole| hole.points().iter().rev().copied().collect()).collect())
     }
 
+    fn offset(&self, region: &Region, radius_mm: f64) -> Region {
+        self.effort.spend(region.vertices());
+        region.offset(radius_mm, ARC * radius_mm.abs())
+    }
+
     fn on_grid(&self, corners: &[DVec2; 4]) -> Laid {
         let grid = self.ground.grid;
         Laid::new(grid, corners.iter().map(|&p| nearest_step(grid, p)).collect())
@@ -235,14 +304,20 @@ impl<'a> Site<'a> {
         Region::fill(grid, &paths, FillRule::Positive)
     }
 
-    /// Paths whose positive winding is the material in the window, with the bridges that were laid.
-    fn window(&self, low: DVec2, high: DVec2) -> Vec<Vec<GridPoint>> {
+    /// Paths whose positive winding is the material in the window, with the bridges that were laid. `steps` are those
+    /// of a contour.
+    fn window<'s>(
+        &self,
+        low: DVec2,
+        high: DVec2,
+        steps: impl Fn(usize) -> &'s [GridPoint],
+    ) -> Vec<Vec<GridPoint>> {
         let grid = self.ground.grid;
         let meets = |a: DVec2, b: DVec2| a.cmple(high).all() && b.cmpge(low).all();
         let [least, greatest] = [low, high].map(|p| nearest_step(grid, p));
-        let rims = self.ground.rims.iter().filter(|rim| meets(rim.low, rim.high));
-        let mut paths: Vec<Vec<GridPoint>> =
-            rims.map(|rim| clipped(&rim.steps, least, greatest)).filter(|path| path.len() > 2).collect();
+        let rims = self.ground.rims.iter().enumerate().filter(|(_, rim)| meets(rim.low, rim.high));
+        let paths = rims.map(|(rim, _)| clipped(steps(rim), least, greatest));
+        let mut paths: Vec<Vec<GridPoint>> = paths.filter(|path| path.len() > 2).collect();
         if self.side == Side::Ink {
             paths.iter_mut().for_each(|path| path.reverse());
             paths.push(frame(least, greatest));
@@ -266,10 +341,6 @@ fn euler(region: &Region) -> isize {
 fn alone(part: &Part, grid: Grid) -> Region {
     let paths: Vec<Vec<GridPoint>> = part.contours().map(|c| c.points().to_vec()).collect();
     Region::fill(grid, &paths, FillRule::Positive)
-}
-
-fn offset(region: &Region, radius_mm: f64) -> Region {
-    region.offset(radius_mm, ARC * radius_mm.abs())
 }
 
 /// What a bridge changes.

@@ -158,7 +158,17 @@ impl Replay<'_> {
                 self.fault(place, "it leaves no component, or less than no hole");
             }
         }
+        made.winds = self.winds_with_bridges(made.winds);
         made
+    }
+
+    /// Whether something goes all the way round with the bridges, where without them it did or did not. On which side of
+    /// the inside a bridge lies is not in the certificate, so what the certificate says is taken where it can be: a strut
+    /// may close a ring, and a slit may open one, but not the other way.
+    fn winds_with_bridges(&self, winds: bool) -> bool {
+        let Certificate { shape, bridges, result, .. } = self.certificate;
+        let has = |kind: &str| *shape == Shape::Ring && bridges.iter().any(|bridge| bridge.kind == kind);
+        if result.closed_pattern { winds || has("strut") } else { winds && !has("slit") }
     }
 }
 
