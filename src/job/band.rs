@@ -157,7 +157,7 @@ impl Band {
             }
             band.report.made.times.clone_from(&clock.times);
             band.report.tell_number(runs.sequences);
-            band.report.made.certificate.tell_source(job, &cut);
+            band.report.made.certificate.tell_source(job, cut);
             band.report.drawn_exactly = runs.is_exact;
             bands.push(band);
         }
