@@ -4,6 +4,9 @@
 //! that was taken up last is named. The nearest count that can be had is looked for by solving for ranges of
 //! counts, so there is a sequence with every count that is named.
 
+use super::connectivity::{Connectivity, NODE_LIMIT};
+use super::counts::ranges;
+use super::family::scopes;
 use super::lengths::{lengths, stays_in_band};
 use super::problem::{Problem, Unsolved};
 use super::solve;
@@ -122,12 +125,33 @@ impl Count {
             Self::Holes => topology.holes,
         }
     }
+
+    /// The least and the most that runs with the `others` can have, as far as the graph of connections knows: nothing
+    /// beyond can be had. `None` when there is no run.
+    fn ends(self, problem: &Problem<'_>, others: Goal) -> Option<(u32, u32)> {
+        let mut ends: Option<(u32, u32)> = None;
+        for scope in scopes(problem, others.closed_pattern) {
+            let Some(graph) = Connectivity::new(problem, others, &scope, NODE_LIMIT) else {
+                return Some((0, u32::MAX));
+            };
+            if let Some(found) = ranges(problem, &graph) {
+                let (least, most) = match self {
+                    Self::Components => (found.least.components, found.most.components),
+                    Self::Holes => (found.least.holes, found.most.holes),
+                };
+                ends = Some(ends.map_or((least, most), |(low, high)| (low.min(least), high.max(most))));
+            }
+        }
+        ends
+    }
 }
 
 /// Memory of one attempt, in bytes.
 const ATTEMPT_BYTES: usize = 16 << 20;
 /// Attempts on each side of the request.
 const MOST_TRIES: usize = 12;
+/// Of them, those that come to nothing.
+const MOST_UNKNOWN: usize = 4;
 
 /// The count nearest to `wanted` with which a sequence exists, where `others` is the goal without it; `None` when
 /// none was found. Ranges that lie next to each other, each twice as long as the last, are tried until there is a
@@ -140,13 +164,20 @@ fn nearest(problem: &Problem<'_>, others: Goal, wanted: Wanted, count: Count) ->
         let topology = problem.shape.topology(pieces).expect("a solution adds up");
         Ok::<u32, Unsolved>(count.of(topology))
     };
-    // From the count next to the request away from it; also the first that was not refused, if there is one.
+    let (least, most) = count.ends(problem, others)?;
+    // From the count next to the request away from it, or from the first that the graph knows; also the first that was not refused, if there is one.
     let side = |next: u32, is_above: bool| {
         let away = |from: u32, by: u32| match is_above {
-            true => from.saturating_add(by),
-            false => from.saturating_sub(by),
+            true => from.saturating_add(by).min(most),
+            false => from.saturating_sub(by).max(least),
         };
+        let next = if is_above { next.max(least) } else { next.min(most) };
+        if !(least..=most).contains(&next) {
+            return (None, None);
+        }
         let (mut near, mut length, mut far, mut found) = (next, 1, None, None);
+        // The first that was neither had nor refused, and how many ranges were so.
+        let (mut open, mut unknown) = (None, 0);
         for _ in 0..MOST_TRIES {
             let reach = far.map_or(away(near, length - 1), |far| near.midpoint(far));
             match attempt(near, reach) {
@@ -162,12 +193,21 @@ fn nearest(problem: &Problem<'_>, others: Goal, wanted: Wanted, count: Count) ->
                     length *= 2;
                 }
                 // No count is beyond.
-                Err(Unsolved::Infeasible) if far.is_none() => return (found, None),
-                Err(Unsolved::Infeasible) => return (found, found),
+                Err(Unsolved::Infeasible) if far.is_none() => return (found, open),
+                Err(Unsolved::Infeasible) => return (found, open.or(found)),
+                // What lies further may be found sooner.
+                Err(Unsolved::TooLarge { .. })
+                    if far.is_none() && unknown < MOST_UNKNOWN && reach != away(reach, 1) =>
+                {
+                    open = open.or(Some(near));
+                    unknown += 1;
+                    near = away(reach, 1);
+                    length *= 2;
+                }
                 Err(Unsolved::TooLarge { .. }) => break,
             }
         }
-        (found, Some(near))
+        (found, open.or(Some(near)))
     };
     let below = wanted.least().checked_sub(1).map_or((None, None), |next| side(next, false));
     let above = wanted.most().checked_add(1).map_or((None, None), |next| side(next, true));
