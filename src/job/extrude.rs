@@ -15,7 +15,7 @@ use crate::export::{self, SvgOptions};
 use crate::fabricate::{self, Bridge, Counts};
 use crate::planar::{GridPoint, Region, Tolerances};
 use crate::topology::{Goal, Wanted};
-use crate::verify::{self, Expected, StlReport, SvgReport};
+use crate::verify::{self, Expected, Mismatch, StlReport, SvgReport};
 
 /// The part of the chord error that is for flattening the drawing; the rest is for fitting curves to it again.
 const READ_SHARE: f64 = 0.5;
@@ -186,11 +186,7 @@ fn check_svg(
     let bytes = pending.read_again()?;
     let report = verify::read_svg(&bytes, chord_mm / 4.0)
         .map_err(|error| JobError::Unjudged { file: name(target), error })?;
-    report.check(expected).map_err(|mismatch| JobError::Mismatch {
-        file: name(target),
-        mismatch,
-        remedy: String::new(),
-    })?;
+    report.check(expected).map_err(|mismatch| mismatched(target, mismatch))?;
     Ok(report)
 }
 
@@ -203,12 +199,13 @@ pub(super) fn check_stl(
     let bytes = pending.read_again()?;
     let report =
         verify::read_stl(&bytes).map_err(|error| JobError::Unjudged { file: name(target), error })?;
-    report.check(expected).map_err(|mismatch| JobError::Mismatch {
-        file: name(target),
-        mismatch,
-        remedy: String::new(),
-    })?;
+    report.check(expected).map_err(|mismatch| mismatched(target, mismatch))?;
     Ok(report)
+}
+
+/// That a written file is not as planned.
+fn mismatched(target: &Target, mismatch: Mismatch) -> JobError {
+    JobError::Mismatch { file: name(target), mismatch, remedy: String::new() }
 }
 
 /// The last part of a path, which is the same in every folder.
