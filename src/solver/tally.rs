@@ -112,12 +112,7 @@ fn between(
     // What is not explored is as free as can be.
     let free = pairs.explored() as u32;
     let above = |automaton: &Automaton<'_>, piece: usize, state: StateId| {
-        let better = |&id: &u32| automaton.dominates(pairs.nodes[id as usize].state, state);
-        let tighter = |a: u32, b: u32| {
-            let state = |id: u32| pairs.nodes[id as usize].state;
-            if automaton.dominates(state(a), state(b)) { b } else { a }
-        };
-        let found = by_piece[piece].iter().take(COMPARED).copied().filter(better).reduce(tighter);
+        let found = pairs.nearest(&by_piece[piece], state, |a, b| automaton.dominates(a, b));
         found.unwrap_or(free + piece as u32)
     };
     let is_stop = |pair: &Pair| {
@@ -160,12 +155,7 @@ fn between(
             Shape::Ring => closing_costs(problem, &[first], &scope.allowed),
         };
         let below = |piece: usize, state: StateId| {
-            let worse = |&id: &u32| automaton.dominates(state, pairs.nodes[id as usize].state);
-            let tighter = |a: u32, b: u32| {
-                let state = |id: u32| pairs.nodes[id as usize].state;
-                if automaton.dominates(state(b), state(a)) { b } else { a }
-            };
-            by_piece[piece].iter().take(COMPARED).copied().filter(worse).reduce(tighter)
+            pairs.nearest(&by_piece[piece], state, |a, b| automaton.dominates(b, a))
         };
         let is_stop = |pair: &Pair| stop[pair.piece as usize].is_some() && automaton.accepts(pair.state);
         let links =
@@ -322,6 +312,14 @@ impl Pairs {
             found[pair.piece as usize].push(id);
         }
         found
+    }
+
+    /// Of the first of some pairs with one piece those whose state is `beyond` this one, and of these one that no other
+    /// lies between.
+    fn nearest(&self, ids: &[u32], state: StateId, beyond: impl Fn(StateId, StateId) -> bool) -> Option<u32> {
+        let state_of = |id: u32| self.nodes[id as usize].state;
+        let found = ids.iter().take(COMPARED).copied().filter(|&id| beyond(state_of(id), state));
+        found.reduce(|a, b| if beyond(state_of(a), state_of(b)) { b } else { a })
     }
 
     /// The explored pairs as a graph. `lead` says for each join, by piece and state, where it leads: with the pair
