@@ -283,7 +283,7 @@ impl<'a> Case<'a> {
         let can_be = met().any(|topology| goal.admits(topology));
         let mut automaton = Automaton::new(problem.descriptors, goal, problem.shape);
         let (never, out_of_range) =
-            (is_never(problem, &mut automaton, scope), is_out_of_range(problem, goal, scope));
+            (is_never(problem, &mut automaton, scope), is_out_of_range(problem, goal, scope, None));
         prop_assert!(!(can_be && never), "{goal:?} is possible");
         prop_assert!(!(can_be && out_of_range), "{goal:?} is in range");
         let is_open = problem.shape == Shape::Open;

@@ -303,7 +303,7 @@ impl<'p> Cheapest<'p> {
                 if is_new
                     && !goal.is_free()
                     && !family.estimates.is_exact()
-                    && is_out_of_range(problem, goal, &family.scope)
+                    && is_out_of_range(problem, goal, &family.scope, family.estimates.connections())
                 {
                     family.members.clear();
                 }

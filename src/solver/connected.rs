@@ -55,6 +55,11 @@ impl Connected {
         (!estimates.is_empty()).then(|| Self { graph, estimates, nodes: FxHashMap::default() })
     }
 
+    /// The graph.
+    pub(super) fn graph(&self) -> &Connectivity {
+        &self.graph
+    }
+
     /// Makes the estimates know the drift, by prices.
     pub(super) fn learn_drift(&mut self, problem: &Problem<'_>, scope: &Scope) {
         for (priced, passes) in &mut self.estimates {

@@ -45,10 +45,16 @@ pub(super) fn is_never(problem: &Problem<'_>, automaton: &mut Automaton<'_>, sco
 }
 
 /// Whether no run within `scope` of an accepted length has counts that meet the goal, as far as the graph of
-/// connections knows. `false` also when that was not found out.
-pub(super) fn is_out_of_range(problem: &Problem<'_>, goal: Goal, scope: &Scope) -> bool {
-    let Some(graph) = Connectivity::new(problem, goal, scope, NODE_LIMIT) else { return false };
-    let Some(Ranges { least, most }) = ranges(problem, &graph) else { return true };
+/// connections knows, which is made unless it is `known`. `false` also when that was not found out.
+pub(super) fn is_out_of_range(
+    problem: &Problem<'_>,
+    goal: Goal,
+    scope: &Scope,
+    known: Option<&Connectivity>,
+) -> bool {
+    let made = known.is_none().then(|| Connectivity::new(problem, goal, scope, NODE_LIMIT)).flatten();
+    let Some(graph) = known.or(made.as_ref()) else { return false };
+    let Some(Ranges { least, most }) = ranges(problem, graph) else { return true };
     let is_off = |wanted: Option<Wanted>, least, most| {
         wanted.is_some_and(|wanted| wanted.most() < least || wanted.least() > most)
     };
@@ -57,7 +63,7 @@ pub(super) fn is_out_of_range(problem: &Problem<'_>, goal: Goal, scope: &Scope) 
     {
         return true;
     }
-    let Some(set) = counts(problem, &graph, Caps::of(goal)) else { return false };
+    let Some(set) = counts(problem, graph, Caps::of(goal)) else { return false };
     let all = |wanted: Option<Wanted>| wanted.map_or(0..=0, |w| w.least()..=w.most());
     !all(goal.components).any(|components| all(goal.holes).any(|holes| set.has(Counts { components, holes })))
 }
