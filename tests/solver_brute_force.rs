@@ -504,3 +504,21 @@ proptest! {
         prop_assume!(is_small);
     }
 }
+
+/// With hardly any memory the first row of such a run is not in the block of the least length.
+#[test]
+fn a_piece_wider_than_all_that_are_joined_is_a_run() {
+    let descriptors = vec![Descriptor::new(&[], &[], 0, 0), Descriptor::new(&[0], &[], 0, 1)];
+    let pieces = Pieces { descriptors, steps: vec![Vec::new(); 2] };
+    let request = Request {
+        shape: Shape::Open,
+        widths: vec![3, 2],
+        begin: vec![0; 2],
+        end: vec![0; 2],
+        window: (3, 3),
+        drift_limit: 0,
+        label_limit: 0,
+        goals: vec![Goal::default()],
+    };
+    assert!(check(&pieces, &request).expect("it is found"));
+}

@@ -8,6 +8,8 @@
 //! The drift of a ring is measured from where it is opened, so a ring stays in the band if it does from one
 //! of its narrowest cuts.
 
+use std::cmp::Reverse;
+
 use super::estimates::{Estimates, Level};
 use super::graph::{Scope, of_pieces};
 use super::problem::{Cost, Problem};
@@ -94,18 +96,18 @@ pub(super) fn closing_costs(problem: &Problem<'_>, firsts: &[usize], allowed: &[
 
 impl Family {
     fn new(problem: &Problem<'_>, scope: Scope, is_ring: bool) -> Self {
-        let table = piece_table(problem, &scope);
-        let estimate_of = |&(piece, cost): &(usize, Cost)| estimate(&table, problem, piece, cost);
+        let mut table = piece_table(problem, &scope);
+        let estimates = estimates(&mut table, problem, &scope);
         let mut members: Vec<Member> = match is_ring {
             false => {
-                let estimate = scope.starts.iter().map(estimate_of).min().unwrap_or(NEVER);
+                let estimate = estimates.into_iter().min().unwrap_or(NEVER);
                 vec![Member { scope: scope.clone(), estimate, table: None }]
             }
             true => scope
                 .starts
                 .iter()
-                .map(|start| {
-                    let estimate = estimate_of(start);
+                .zip(estimates)
+                .map(|(start, estimate)| {
                     let stop = closing_costs(problem, &[start.0], &scope.allowed);
                     let scope = Scope { starts: vec![*start], allowed: scope.allowed.clone(), stop };
                     Member { scope, estimate, table: None }
@@ -189,11 +191,8 @@ impl Member {
     /// The least cost of completing a run of this member by its last piece. Made once, if it is small.
     fn take_table(&mut self, problem: &Problem<'_>) -> Box<Table<Cost>> {
         let mut table = self.table.take().unwrap_or_else(|| Box::new(piece_table(problem, &self.scope)));
-        let starts = self.scope.starts.iter().map(|&(piece, cost)| {
-            table.load(problem.widths[piece].min(*problem.window.end()));
-            estimate(&table, problem, piece, cost)
-        });
-        self.estimate = self.estimate.max(starts.min().unwrap_or(NEVER));
+        let starts = estimates(&mut table, problem, &self.scope);
+        self.estimate = self.estimate.max(starts.into_iter().min().unwrap_or(NEVER));
         table
     }
 
@@ -207,17 +206,22 @@ impl Member {
 }
 
 fn piece_table(problem: &Problem<'_>, scope: &Scope) -> Table<Cost> {
-    let mut table = Table::new(
-        of_pieces(problem, scope).into(),
-        problem.window.clone(),
-        problem.share(TABLE_BUDGET / 2),
-        |toll| toll.cost,
-    );
-    table.load(0);
-    table
+    let (graph, budget) = (of_pieces(problem, scope), problem.share(TABLE_BUDGET / 2));
+    Table::new(graph.into(), problem.window.clone(), budget, |toll| toll.cost)
 }
 
-/// The least cost of a run that begins with `piece` at `cost`.
-fn estimate(table: &Table<Cost>, problem: &Problem<'_>, piece: usize, cost: Cost) -> Cost {
-    table.at(problem.widths[piece], piece).saturating_add(cost)
+/// The least cost of a run from each of the first pieces of `scope`.
+fn estimates(table: &mut Table<Cost>, problem: &Problem<'_>, scope: &Scope) -> Vec<Cost> {
+    // A first piece may be wider than any that is joined, so its row need not be in the block of the least length. From
+    // the widest on, each block is made once.
+    let mut order: Vec<usize> = (0..scope.starts.len()).collect();
+    order.sort_by_key(|&i| Reverse(problem.widths[scope.starts[i].0]));
+    let mut estimates = vec![NEVER; order.len()];
+    for i in order {
+        let (piece, cost) = scope.starts[i];
+        let length = problem.widths[piece];
+        table.load(length);
+        estimates[i] = table.at(length, piece).saturating_add(cost);
+    }
+    estimates
 }
