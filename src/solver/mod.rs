@@ -22,6 +22,7 @@ mod classes;
 mod connected;
 mod connectivity;
 mod counts;
+mod cycles;
 mod estimates;
 mod explain;
 mod family;
