@@ -39,20 +39,38 @@ struct Frame {
     words: usize,
 }
 
-/// Word operations at which a pass is not begun: about a second.
-const WORK_LIMIT: usize = 1_000_000_000;
-/// Joins at which a pass of ranges is not begun: about half a second.
-const RANGES_WORK_LIMIT: usize = 100_000_000;
+/// Word operations at which a pass is not begun, with little memory and with much: up to about a second.
+const WORK_LIMITS: [usize; 2] = [25_000_000, 1_000_000_000];
+/// Joins at which a pass of ranges is not begun: up to about half a second.
+const RANGES_WORK_LIMITS: [usize; 2] = [10_000_000, 100_000_000];
 
-/// The counts of all runs in the window; `None` when the pass would be too long.
-pub(super) fn counts(problem: &Problem<'_>, graph: &Connectivity, caps: Caps) -> Option<CountSet> {
+/// Word operations at which a pass is not begun. A search that may take little memory is one of many, and has no
+/// more time for this.
+pub(super) fn work_limit(problem: &Problem<'_>) -> usize {
+    let [least, most] = WORK_LIMITS;
+    problem.share(most).max(least)
+}
+
+/// The word operations that the pass for these caps takes.
+pub(super) fn work(problem: &Problem<'_>, graph: &Connectivity, caps: Caps) -> usize {
+    let frame = Frame::new(caps);
+    let longest = *problem.window.end() as usize;
+    longest.saturating_mul(graph.joins()).saturating_mul(frame.rows).saturating_mul(frame.words)
+}
+
+/// The counts of all runs in the window; `None` when the pass would take more than `most` word operations.
+pub(super) fn counts(
+    problem: &Problem<'_>,
+    graph: &Connectivity,
+    caps: Caps,
+    most: usize,
+) -> Option<CountSet> {
+    if work(problem, graph, caps) > most {
+        return None;
+    }
     let frame = Frame::new(caps);
     let longest = *problem.window.end() as usize;
     let size = frame.rows * frame.words;
-    let work = longest.saturating_mul(graph.joins()).saturating_mul(size);
-    if work > WORK_LIMIT {
-        return None;
-    }
     let n = graph.len();
     let layers = problem.widths.iter().max().map_or(1, |&w| w as usize) + 1;
     let mut sets = vec![0u64; layers * n * size];
@@ -98,7 +116,8 @@ pub(super) fn counts(problem: &Problem<'_>, graph: &Connectivity, caps: Caps) ->
 pub(super) fn ranges(problem: &Problem<'_>, graph: &Connectivity) -> Option<Ranges> {
     let longest = *problem.window.end() as usize;
     let n = graph.len();
-    if longest.saturating_mul(graph.joins()) > RANGES_WORK_LIMIT {
+    let [least, most] = RANGES_WORK_LIMITS;
+    if longest.saturating_mul(graph.joins()) > problem.share(most).max(least) {
         return Some(Ranges::ALL);
     }
     let layers = problem.widths.iter().max().map_or(1, |&w| w as usize) + 1;
