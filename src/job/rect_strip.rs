@@ -171,7 +171,9 @@ impl Strips {
         let planned = match explained {
             true => plan_run(&job, &mut cut, &map, clock),
             false => plan_strip(&job, &mut cut, &map, clock).and_then(|found| {
-                found.ok_or_else(|| JobError::Refused("no sequence of the strip has what is wanted".to_owned()))
+                found.ok_or_else(|| {
+                    JobError::Refused("none hangs together with strands that fit at every join".to_owned())
+                })
             }),
         };
         let (plan, planned) = planned.inspect_err(|error| {

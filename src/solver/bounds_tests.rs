@@ -9,9 +9,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use proptest::prelude::*;
 
 use super::classes::{CLASS_SIZES, Classes};
+use super::coarse::bounds;
 use super::connected::Connected;
 use super::connectivity::{Connectivity, Counts, NODE_LIMIT};
-use super::coarse::bounds;
 use super::counts::{Caps, Ranges, counts, ranges};
 use super::estimates::{Estimates, Level};
 use super::family::{Family, families, scopes};
@@ -338,7 +338,8 @@ fn check_counts(problem: &Problem<'_>, runs: &Runs, scope: &Scope) -> Result<(),
     for (components, holes) in
         [(None, None), (Some(4), None), (None, Some(150)), (Some(4), Some(150)), (Some(90), Some(3))]
     {
-        let set = counts(problem, &graph, Caps { components, holes }, usize::MAX).expect("the problem is small");
+        let set =
+            counts(problem, &graph, Caps { components, holes }, usize::MAX).expect("the problem is small");
         let read =
             |counts: Counts| (components.map_or(0, |_| counts.components), holes.map_or(0, |_| counts.holes));
         let had: BTreeSet<(u32, u32)> =

@@ -6,8 +6,8 @@
 //! less χ, are at most as many as strands merge. One pass over the pieces takes next to no time where the graph of
 //! connections would be too large. Excluded: which strands are connected already, which [`super::counts`] knows.
 
-use super::connectivity::Counts;
-use super::counts::Ranges;
+use super::connectivity::{Connectivity, Counts};
+use super::counts::{Ranges, is_soon_ranged, ranges};
 use super::graph::Scope;
 use super::problem::Problem;
 use crate::topology::{Descriptor, Shape};
@@ -58,9 +58,23 @@ pub(super) fn bounds(problem: &Problem<'_>, scope: &Scope) -> Option<Ranges> {
     })
 }
 
+/// The ranges that the graph of connections knows; without one, or where that would take too long, these bounds. `None`
+/// when there is no run.
+pub(super) fn ranges_or_bounds(
+    problem: &Problem<'_>,
+    scope: &Scope,
+    graph: Option<&Connectivity>,
+) -> Option<Ranges> {
+    match graph.filter(|graph| is_soon_ranged(problem, graph)) {
+        Some(graph) => ranges(problem, graph),
+        None => bounds(problem, scope),
+    }
+}
+
 fn gain(piece: &Descriptor) -> Sums {
     let (left, closed) = (piece.left().len() as i64, i64::from(piece.closed()));
-    let begun = (0..piece.open()).filter(|&class| piece.left().iter().all(|&l| u32::from(l) != class)).count();
+    let begun =
+        (0..piece.open()).filter(|&class| piece.left().iter().all(|&l| u32::from(l) != class)).count();
     let begun = begun as i64 + closed;
     let euler = piece.euler() - left;
     [begun, begun - euler, -closed, -euler, euler, -i64::from(piece.holes())]

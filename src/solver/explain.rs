@@ -57,7 +57,8 @@ pub fn explain(problem: &Problem<'_>, goal: Goal, longest: u32) -> Refusal {
         };
     }
     let mut effort = Effort::new(problem);
-    if stays_in_band(problem).map_or_else(|| effort.solve(free) == Err(Unsolved::Infeasible), |stays| !stays) {
+    if stays_in_band(problem).map_or_else(|| effort.solve(free) == Err(Unsolved::Infeasible), |stays| !stays)
+    {
         return Refusal::Drift;
     }
     // A constraint that is the only one left is the one to name; what is not refused soon is left open.
@@ -73,7 +74,9 @@ pub fn explain(problem: &Problem<'_>, goal: Goal, longest: u32) -> Refusal {
         (Some(wanted), None) => {
             Refusal::Components { nearest: nearest(&mut effort, others, wanted, Count::Components) }
         }
-        (None, Some(wanted)) => Refusal::Holes { nearest: nearest(&mut effort, others, wanted, Count::Holes) },
+        (None, Some(wanted)) => {
+            Refusal::Holes { nearest: nearest(&mut effort, others, wanted, Count::Holes) }
+        }
         (None, None) => Refusal::Drift,
         (Some(of_components), Some(of_holes)) => {
             let mut alone = |goal: Goal| match is_impossible(problem, goal) {

@@ -6,9 +6,9 @@
 //! it comes soon however many there are: first each has little memory, then more. A count that is named has a
 //! sequence; that there is none nearer is said only where every nearer one was refused by the graph or by a search.
 
-use super::coarse::bounds;
+use super::coarse::ranges_or_bounds;
 use super::connectivity::{Connectivity, Counts, NODE_LIMIT};
-use super::counts::{Caps, CountSet, Ranges, counts, ranges, work};
+use super::counts::{Caps, CountSet, Ranges, counts, work};
 use super::family::scopes;
 use super::problem::{Problem, Solution, Unsolved};
 use super::solve;
@@ -28,7 +28,7 @@ const MOST_LABELS: usize = 1_200_000;
 /// What a search takes that makes no labels of its own, counted in labels.
 const LABELS_PER_SEARCH: usize = 20_000;
 /// Memory of a search, in bytes, in the first round and in the second.
-const ROUND_BYTES: [usize; 2] = [2 << 20, 8 << 20];
+const ROUND_BYTES: [usize; 2] = [2 << 20, 16 << 20];
 /// Word operations of all passes over sets of counts together: about a tenth of a second.
 const MOST_WORK: usize = 120_000_000;
 /// Memory that the passes are in proportion to, in bytes.
@@ -37,7 +37,7 @@ const PASS_BYTES: usize = 64 << 20;
 const REACH: u32 = 255;
 /// By so much ranges grow after one in which nothing is, and after one of which that was not found out.
 const GROWTH: u32 = 2;
-const LEAP: u32 = 8;
+const LEAP: u32 = 32;
 
 /// What the searches of a refusal may still take.
 pub(super) struct Effort<'p> {
@@ -126,24 +126,20 @@ impl Possible {
         let all = scopes(problem, others.closed_pattern);
         for (before, scope) in all.iter().enumerate().rev() {
             let left = before + 1;
-            let Some((least, most)) = bounds(problem, scope).map(|bounds| count.ends(bounds)) else { continue };
-            let Some(graph) = Connectivity::new(problem, others, scope, nodes / left) else {
-                nodes -= nodes / left;
-                known.push(Known { least, most, told: None });
-                continue;
-            };
-            nodes = nodes.saturating_sub(graph.len());
-            let Some((low, high)) = ranges(problem, &graph).map(|ranges| count.ends(ranges)) else { continue };
-            let (least, most) = (least.max(low), most.min(high));
+            let graph = Connectivity::new(problem, others, scope, nodes / left);
+            nodes -= graph.as_ref().map_or(nodes / left, Connectivity::len);
+            let ends = ranges_or_bounds(problem, scope, graph.as_ref()).map(|ranges| count.ends(ranges));
+            let Some((least, most)) = ends else { continue };
             let cap = most.min(wanted.most().saturating_add(REACH));
             let caps = match count {
                 Count::Components => Caps { components: Some(cap), ..Caps::of(others) },
                 Count::Holes => Caps { holes: Some(cap), ..Caps::of(others) },
             };
-            let set = counts(problem, &graph, caps, most_work / left);
-            if set.is_some() {
+            let set = graph.and_then(|graph| {
+                let set = counts(problem, &graph, caps, most_work / left)?;
                 most_work -= work(problem, &graph, caps);
-            }
+                Some(set)
+            });
             known.push(Known { least, most, told: set.map(|set| (cap, set)) });
         }
         Self { count, others, scopes: known }
@@ -253,7 +249,12 @@ impl Side {
 
 /// The count nearest to `wanted` with which a sequence exists, where `others` is the goal without it; `None` when none
 /// was found.
-pub(super) fn nearest(effort: &mut Effort<'_>, others: Goal, wanted: Wanted, count: Count) -> Option<Nearest> {
+pub(super) fn nearest(
+    effort: &mut Effort<'_>,
+    others: Goal,
+    wanted: Wanted,
+    count: Count,
+) -> Option<Nearest> {
     let problem = effort.problem;
     let possible = Possible::new(problem, others, wanted, count);
     let mut sides = [
@@ -268,6 +269,12 @@ pub(super) fn nearest(effort: &mut Effort<'_>, others: Goal, wanted: Wanted, cou
         let open = sides.iter().flat_map(|side| [side.open, side.near]).flatten();
         open.into_iter().any(|n| wanted.distance(n) < limit)
     };
+    let counted = |solution: Solution| {
+        let pieces = solution.sequence.iter().map(|&piece| &problem.descriptors[piece]);
+        count.of(problem.shape.topology(pieces).expect("a solution adds up"))
+    };
+    let [.., ample] = ROUND_BYTES;
+    let mut is_first = true;
     for bytes in ROUND_BYTES {
         while effort.labels > 0 {
             let limit = best(&sides).map(rank);
@@ -277,16 +284,21 @@ pub(super) fn nearest(effort: &mut Effort<'_>, others: Goal, wanted: Wanted, cou
             let range = side.range(&possible, near);
             let (low, high) = (range.0.min(range.1), range.0.max(range.1));
             let range_wanted = Wanted::between(low, high).expect("the ends are in order");
-            let result = effort.search(count.wanted(others, range_wanted), bytes).map(|solution| {
-                let pieces = solution.sequence.iter().map(|&piece| &problem.descriptors[piece]);
-                count.of(problem.shape.topology(pieces).expect("a solution adds up"))
-            });
+            // The nearest of all that the graph allows can be had most often.
+            let bytes = if std::mem::take(&mut is_first) { ample } else { bytes };
+            let result = effort.search(count.wanted(others, range_wanted), bytes).map(counted);
             side.learn(&possible, range, result);
         }
         if !is_open(&sides) {
             break;
         }
         sides.iter_mut().for_each(Side::again);
+    }
+    if best(&sides).is_none() {
+        // Whatever the ornament has by itself is found at once, and more than nothing.
+        effort.labels = effort.labels.max(1);
+        let whole = effort.search(others, ample).ok().map(counted);
+        return whole.map(|count| Nearest { count, is_proven: false });
     }
     best(&sides).map(|count| Nearest { count, is_proven: !is_open(&sides) })
 }

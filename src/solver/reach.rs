@@ -2,12 +2,12 @@
 //!
 //! Of the states that a piece can be reached in, only those that no other dominates are followed: for one
 //! component the coarsest, for no holes the finest. Most goals that an exemplar cannot meet fall here, without
-//! a look at a single length. Goals without dominance have the graph of [`super::counts`], and where that is too large,
-//! or not worth the time, what the pieces alone tell ([`super::coarse`]).
+//! a look at a single length. Goals without dominance have the graph of [`super::counts`], and where that is too large
+//! what the pieces alone tell ([`super::coarse`]).
 
+use super::coarse::ranges_or_bounds;
 use super::connectivity::{Connectivity, Counts, NODE_LIMIT};
-use super::coarse::bounds;
-use super::counts::{Caps, Ranges, counts, ranges, work_limit};
+use super::counts::{Caps, Ranges, counts, work_limit};
 use super::family::scopes;
 use super::graph::Scope;
 use super::problem::Problem;
@@ -28,10 +28,10 @@ pub fn is_impossible(problem: &Problem<'_>, goal: Goal) -> bool {
     let (nodes, work) = (NODE_LIMIT / scopes.len().max(1), SOON / scopes.len().max(1));
     let mut automaton = Automaton::new(problem.descriptors, goal, problem.shape);
     scopes.iter().all(|scope| {
-        is_never(problem, &mut automaton, scope)
-            || is_out_by_pieces(problem, goal, scope)
-            || Connectivity::new(problem, goal, scope, nodes)
-                .is_some_and(|graph| is_out_by_graph(problem, goal, &graph, work))
+        is_never(problem, &mut automaton, scope) || {
+            let graph = Connectivity::new(problem, goal, scope, nodes);
+            is_out(problem, goal, scope, graph.as_ref(), work)
+        }
     })
 }
 
@@ -74,24 +74,23 @@ pub(super) fn is_out_of_range(
     scope: &Scope,
     known: Option<&Connectivity>,
 ) -> bool {
-    if is_out_by_pieces(problem, goal, scope) {
-        return true;
-    }
     let made = known.is_none().then(|| Connectivity::new(problem, goal, scope, NODE_LIMIT)).flatten();
-    known.or(made.as_ref()).is_some_and(|graph| is_out_by_graph(problem, goal, graph, work_limit(problem)))
+    is_out(problem, goal, scope, known.or(made.as_ref()), work_limit(problem))
 }
 
-/// Whether the pieces alone rule the goal out.
-fn is_out_by_pieces(problem: &Problem<'_>, goal: Goal, scope: &Scope) -> bool {
-    bounds(problem, scope).is_none_or(|bounds| is_outside(goal, bounds))
-}
-
-/// Whether the graph of connections does, by passes of at most so many word operations.
-fn is_out_by_graph(problem: &Problem<'_>, goal: Goal, graph: &Connectivity, work: usize) -> bool {
-    if ranges(problem, graph).is_none_or(|ranges| is_outside(goal, ranges)) {
+/// The same, by passes over the graph of at most so many word operations; without one, by the pieces alone.
+fn is_out(
+    problem: &Problem<'_>,
+    goal: Goal,
+    scope: &Scope,
+    graph: Option<&Connectivity>,
+    work: usize,
+) -> bool {
+    if ranges_or_bounds(problem, scope, graph).is_none_or(|ranges| is_outside(goal, ranges)) {
         return true;
     }
-    let Some(set) = counts(problem, graph, Caps::of(goal), work) else { return false };
+    let set = graph.and_then(|graph| counts(problem, graph, Caps::of(goal), work));
+    let Some(set) = set else { return false };
     let all = |wanted: Option<Wanted>| wanted.map_or(0..=0, |w| w.least()..=w.most());
     !all(goal.components).any(|components| all(goal.holes).any(|holes| set.has(Counts { components, holes })))
 }
@@ -101,8 +100,7 @@ fn is_outside(goal: Goal, Ranges { least, most }: Ranges) -> bool {
     let is_off = |wanted: Option<Wanted>, least, most| {
         wanted.is_some_and(|wanted| wanted.most() < least || wanted.least() > most)
     };
-    is_off(goal.components, least.components, most.components)
-        || is_off(goal.holes, least.holes, most.holes)
+    is_off(goal.components, least.components, most.components) || is_off(goal.holes, least.holes, most.holes)
 }
 
 /// Takes up a state unless another dominates it; those that it dominates go.
