@@ -7,7 +7,6 @@
 use super::lengths::{lengths, stays_in_band};
 use super::nearest::{Count, Effort, Nearest, nearest};
 use super::problem::{Problem, Unsolved};
-use super::reach::is_impossible;
 use crate::topology::Goal;
 
 /// Why a problem has no solution.
@@ -79,16 +78,12 @@ pub fn explain(problem: &Problem<'_>, goal: Goal, longest: u32) -> Refusal {
         }
         (None, None) => Refusal::Drift,
         (Some(of_components), Some(of_holes)) => {
-            let mut alone = |goal: Goal| match is_impossible(problem, goal) {
-                true => Err(Unsolved::Infeasible),
-                false => effort.solve(goal),
-            };
-            let by_components = alone(components);
+            let by_components = effort.solve(components);
             if by_components == Err(Unsolved::Infeasible) {
                 let nearest = nearest(&mut effort, others, of_components, Count::Components);
                 return Refusal::Components { nearest };
             }
-            let by_holes = alone(holes);
+            let by_holes = effort.solve(holes);
             if by_holes == Err(Unsolved::Infeasible) {
                 return Refusal::Holes { nearest: nearest(&mut effort, others, of_holes, Count::Holes) };
             }

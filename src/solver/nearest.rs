@@ -29,12 +29,12 @@ const MOST_LABELS: usize = 1_200_000;
 const LABELS_PER_SEARCH: usize = 20_000;
 /// Memory of a search, in bytes, in the first round and in the second.
 const ROUND_BYTES: [usize; 2] = [2 << 20, 16 << 20];
-/// Word operations of all passes over sets of counts together: about a tenth of a second.
-const MOST_WORK: usize = 120_000_000;
+/// Word operations of all passes over sets of counts together: less than a tenth of a second.
+const MOST_WORK: usize = 60_000_000;
 /// Memory that the passes are in proportion to, in bytes.
 const PASS_BYTES: usize = 64 << 20;
 /// Counts are told one by one up to so many more than are wanted.
-const REACH: u32 = 255;
+const REACH: u32 = 127;
 /// By so much ranges grow after one in which nothing is, and after one of which that was not found out.
 const GROWTH: u32 = 2;
 const LEAP: u32 = 32;
@@ -274,6 +274,8 @@ pub(super) fn nearest(
         count.of(problem.shape.topology(pieces).expect("a solution adds up"))
     };
     let [.., ample] = ROUND_BYTES;
+    // What the first search has to leave for the others.
+    let rest = effort.labels / 3;
     let mut is_first = true;
     for bytes in ROUND_BYTES {
         while effort.labels > 0 {
@@ -285,8 +287,11 @@ pub(super) fn nearest(
             let (low, high) = (range.0.min(range.1), range.0.max(range.1));
             let range_wanted = Wanted::between(low, high).expect("the ends are in order");
             // The nearest of all that the graph allows can be had most often.
-            let bytes = if std::mem::take(&mut is_first) { ample } else { bytes };
+            let bytes = if is_first { ample } else { bytes };
             let result = effort.search(count.wanted(others, range_wanted), bytes).map(counted);
+            if std::mem::take(&mut is_first) {
+                effort.labels = effort.labels.max(rest);
+            }
             side.learn(&possible, range, result);
         }
         if !is_open(&sides) {
