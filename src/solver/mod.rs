@@ -19,6 +19,7 @@ mod bounds_tests;
 mod census;
 mod cheapest;
 mod classes;
+mod coarse;
 mod connected;
 mod connectivity;
 mod counts;
@@ -31,6 +32,7 @@ mod forced_tests;
 mod graph;
 mod labels;
 mod lengths;
+mod nearest;
 mod pass;
 mod price;
 mod priced;
@@ -47,9 +49,11 @@ mod variety;
 
 pub use best::{best, canonical};
 pub use census::Census;
-pub use explain::{Nearest, Refusal, explain};
+pub use explain::{Refusal, explain};
+pub use nearest::Nearest;
 pub use problem::{Cost, Problem, Solution, Step, Unsolved};
 pub use random::Random;
+pub use reach::is_impossible;
 pub use tally::{Tally, tally};
 pub use variety::{Variety, autocorrelation, evenness, longest_repeat};
 
