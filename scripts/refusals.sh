@@ -4,12 +4,12 @@
 #
 #   scripts/refusals.sh EXEMPLAR.svg... > docs/refusals.md
 #
-# Only what is refused is listed. Seconds are those of the processor, so that what else the machine does changes
+# Only what is refused is listed, or not done in time. Seconds are those of the processor, so that what else the machine does changes
 # little. Exemplars that are not there are left out.
 #
 #   OPENWORK      the program to measure (the release build)
 #   OPTIONS       more options for every band, as "--width 20mm"
-#   SECONDS_EACH  a run that keeps the processor longer has failed (120)
+#   SECONDS_EACH  a run that keeps the processor longer is ended, and listed as such (120)
 set -euo pipefail
 if [ $# -lt 1 ]; then
   sed -n '2,13p' "$0" >&2
@@ -39,6 +39,7 @@ run() { # EXEMPLAR ALONG TARGET: adds a row if it is refused
   case $status in
     0 | 2) return ;;
     3) echo "$seconds $(sed 's/^error: //; s/|/\//g; 1q' "$work/log")" > "$work/told" ;;
+    137 | 152) echo "$seconds **not done after $limit s**" > "$work/told" ;;
     *) echo "$seconds **failed ($status)**" > "$work/told" ;;
   esac
   printf '| %s | %s | `%s` | %s | %s |\n' "$(basename "$1" .svg)" "${2%%:*}" "$3" "$seconds" \
@@ -63,8 +64,8 @@ cat <<INTRO
 # What cannot be had
 
 Bands of every exemplar along a line of 240 mm and round a circle of 80 mm, with targets that most of them cannot meet.
-Of $(rows .) refusals $(rows 'the nearest that can be had is') name the nearest count with the proof that there is none nearer,
-$(rows '[0-9] can be had') one that can be had, $(rows 'leave out') none, and $(rows 'given up') were given up.
+Of $(rows '[|]$') rows $(rows 'the nearest that can be had is') name the nearest count with the proof that there is none nearer,
+$(rows '; --[a-z]* [0-9]* can be had') one that can be had, $(rows 'leave out --[ch][a-z]* to see') none, $(rows 'given up') were given up, and $(rows 'not done') were ended after $limit s.
 Processor time in seconds, of the whole process: the longest took $(cut -d '|' -f 5 "$work/rows" | sort -g | tail -n 1 | tr -d ' ').
 
 Command: \`${OPTIONS:+OPTIONS="$OPTIONS" }scripts/refusals.sh EXEMPLAR.svg... > docs/refusals.md\`. Exemplars c1 to c9 are real ornaments from

@@ -43,7 +43,7 @@ pub enum Refusal {
     },
 }
 
-/// The constraint that cannot be met, for a problem that [`solve`] found infeasible. `longest` bins are looked
+/// The constraint that cannot be met, for a problem that [`super::solve`] found infeasible. `longest` bins are looked
 /// at for sequences of other lengths.
 pub fn explain(problem: &Problem<'_>, goal: Goal, longest: u32) -> Refusal {
     let problem = &Problem { variety: None, ..problem.clone() };

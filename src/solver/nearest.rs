@@ -2,7 +2,7 @@
 //!
 //! What the graph of connections allows is found first, in one pass for all counts, so that what is impossible is not
 //! looked for. Of what is left, searches for ranges of counts go away from the request on both sides, the nearer side
-//! first, until one finds a sequence; then they close in on it. All searches of a refusal share one [`Effort`], so that
+//! first, until one finds a sequence; then they close in on it. All searches of a refusal share one `Effort`, so that
 //! it comes soon however many there are: first each has little memory, then more. A count that is named has a
 //! sequence; that there is none nearer is said only where every nearer one was refused by the graph or by a search.
 
