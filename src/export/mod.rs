@@ -16,11 +16,13 @@ mod runs;
 mod staged;
 mod stl;
 mod svg;
+mod view;
 
-pub use png::{DEFAULT_PIXELS, png, png_with_bridges};
+pub use png::{DEFAULT_PIXELS, Marks, png};
 pub use staged::{Staged, check_destination, persist_all, remove_staged, stage};
 pub use stl::stl;
 pub use svg::{SvgDocument, SvgOptions, svg};
+pub use view::{DEFAULT_COLOUR, Painted, View, view_png};
 
 use std::io;
 use std::path::{Path, PathBuf};

@@ -20,7 +20,7 @@ use super::stage::{Clock, Stage};
 use super::ways::{Runs, ways, weighed, weighed_note};
 use crate::domain::{BandMap, CurveSpec, PlanarCurve};
 use crate::exemplar::{Limits, read_path};
-use crate::export::{self, SvgDocument, SvgOptions};
+use crate::export::{self, Marks, SvgDocument, SvgOptions};
 use crate::fabricate::{self, Counts};
 use crate::fit::{FitOptions, Outline, Prepared, Sides, StitchMethod};
 use crate::planar::Region;
@@ -305,8 +305,9 @@ impl Band {
                 }
                 Format::Png => {
                     let bridges = self.report.bridges.as_ref().map_or(&[][..], |b| &b.bridges);
+                    let marks = Marks { bridges, ..Marks::default() };
                     let picture = clock.time(Stage::Png, || {
-                        export::png_with_bridges(&self.part.region, bridges, export::DEFAULT_PIXELS)
+                        export::png(&self.part.region, &marks, export::DEFAULT_PIXELS)
                     })?;
                     digest(output, &picture);
                     Pending::new(output.target(), picture)?

@@ -11,7 +11,7 @@ use super::output::{Format, Output, Pending, Target, persist};
 use super::report::{InputReport, StageTime};
 use super::stage::{Clock, Stage};
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
-use crate::export::{self, SvgOptions};
+use crate::export::{self, Marks, SvgOptions};
 use crate::fabricate::{self, Bridge, Counts};
 use crate::planar::{GridPoint, Region, Tolerances};
 use crate::topology::{Goal, Wanted};
@@ -113,8 +113,9 @@ pub fn extrude(
             }
             Format::Png => {
                 let laid: &[Bridge] = bridges.as_ref().map_or(&[], |report| &report.bridges);
-                let picture = clock
-                    .time(Stage::Png, || export::png_with_bridges(&region, laid, export::DEFAULT_PIXELS))?;
+                let marks = Marks { bridges: laid, ..Marks::default() };
+                let picture =
+                    clock.time(Stage::Png, || export::png(&region, &marks, export::DEFAULT_PIXELS))?;
                 Pending::new(target, picture)?
             }
         };
