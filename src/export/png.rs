@@ -184,11 +184,11 @@ mod tests {
         let seams = [vec![DVec2::new(50.0, 5.0), DVec2::new(50.0, 55.0)]];
         let marks =
             Marks { seams_mm: &seams, narrow_mm: &[(DVec2::new(15.0, 30.0), 2.0)], ..Marks::default() };
-        let picture = Pixmap::decode_png(&png(&frame(), &marks, 864).unwrap()).unwrap();
+        let picture = Pixmap::decode_png(&png(&frame(), &marks, 4000).unwrap()).unwrap();
         let has = |[r, g, b]: [u8; 3]| {
             picture.pixels().iter().filter(|p| [p.red(), p.green(), p.blue()] == [r, g, b]).count()
         };
-        assert!(has(SEAM) > 300 && has(NARROW) > 40, "{} {}", has(SEAM), has(NARROW));
+        assert!(has(SEAM) > 3000 && has(NARROW) > 400, "{} {}", has(SEAM), has(NARROW));
     }
 
     #[test]
