@@ -28,7 +28,7 @@ pub use cut_svg::cut_svg;
 pub use cutlines::{CutLines, CutNumbers, Layer};
 pub use dxf::{DxfVersion, dxf};
 pub use outlines::Curves;
-pub use png::{DEFAULT_PIXELS, png, png_with_bridges};
+pub use png::{DEFAULT_PIXELS, png, png_of_plate, png_with_bridges};
 pub use staged::{Staged, check_destination, persist_all, remove_staged, stage};
 pub use stl::stl;
 pub use svg::{SvgDocument, SvgOptions, svg};

@@ -5,7 +5,7 @@ use resvg::tiny_skia::{Color, FillRule, Paint, PathBuilder, Pixmap, Transform};
 
 use super::ExportError;
 use crate::fabricate::Bridge;
-use crate::planar::Region;
+use crate::planar::{Contour, Region};
 
 /// The longer side in pixels when nothing else is asked for.
 pub const DEFAULT_PIXELS: u32 = 1600;
@@ -34,6 +34,32 @@ pub fn png(region: &Region, longer_side: u32) -> Result<Vec<u8>, ExportError> {
 pub fn png_with_bridges(
     region: &Region,
     bridges: &[Bridge],
+    longer_side: u32,
+) -> Result<Vec<u8>, ExportError> {
+    let of_kind = |are_struts: bool| {
+        let outlines = bridges
+            .iter()
+            .filter(move |b| b.kind.is_strut() == are_struts)
+            .flat_map(|b| std::iter::once(&b.corners_mm[..]).chain(b.pockets_mm.iter().map(Vec::as_slice)));
+        outlines.map(|outline| outline.iter().map(|&p| DVec2::from(p)).collect()).collect()
+    };
+    picture(region, [(of_kind(true), STRUT), (of_kind(false), SLIT)], longer_side)
+}
+
+/// `plate` with the pieces that fall out of it in orange.
+///
+/// # Errors
+/// As [`png`].
+pub fn png_of_plate(plate: &Region, fallen: &Region, longer_side: u32) -> Result<Vec<u8>, ExportError> {
+    let exteriors = fallen.parts().iter().flat_map(|part| part.contours());
+    let millimetres = |c: &Contour| c.points().iter().map(|&p| fallen.grid().to_mm(p)).collect();
+    picture(plate, [(exteriors.map(millimetres).collect(), STRUT), (Vec::new(), SLIT)], longer_side)
+}
+
+/// The region with areas in other colours on it, each given by its outlines.
+fn picture(
+    region: &Region,
+    areas: [(Vec<Vec<DVec2>>, [u8; 3]); 2],
     longer_side: u32,
 ) -> Result<Vec<u8>, ExportError> {
     if !PIXELS.contains(&longer_side) {
@@ -71,14 +97,10 @@ pub fn png_with_bridges(
         add(&mut ink, &mut contour.points().iter().map(|&p| region.grid().to_mm(p)));
     }
     fill(ink, FillRule::EvenOdd, INK)?;
-    for (are_struts, colour) in [(true, STRUT), (false, SLIT)] {
+    for (outlines, colour) in areas {
         let mut path = PathBuilder::new();
-        for bridge in bridges.iter().filter(|b| b.kind.is_strut() == are_struts) {
-            for outline in
-                std::iter::once(&bridge.corners_mm[..]).chain(bridge.pockets_mm.iter().map(Vec::as_slice))
-            {
-                add(&mut path, &mut outline.iter().map(|&p| DVec2::from(p)));
-            }
+        for outline in outlines {
+            add(&mut path, &mut outline.into_iter());
         }
         if !path.is_empty() {
             fill(path, FillRule::Winding, colour)?;

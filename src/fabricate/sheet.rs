@@ -78,11 +78,11 @@ fn as_pair<S: serde::Serializer>(v: &DVec2, serializer: S) -> Result<S::Ok, S::E
 /// A plate with a pattern cut out of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Carved {
-    /// What is left of the plate and stays together, from its lower left corner: one component.
-    pub sign: Region,
-    /// All that is left of the plate, with the pieces that fall out.
+    /// All that is left of the plate, from its lower left corner: the sign, and the pieces that fall out.
     pub plate: Region,
-    /// The pieces that fall out, in the order of their least points.
+    /// The pieces that fall out.
+    pub fallen: Region,
+    /// Where they are and how large, in the order of their least points.
     pub falls_out: Vec<FallenPiece>,
 }
 
@@ -135,16 +135,17 @@ pub fn carved(pattern: &Region, sheet: SheetSize, edge_mm: f64) -> Result<Carved
     // The pattern does not reach the border, so one part has it for its exterior.
     let area = |part: &&Part| part.exterior().doubled_area();
     let holds = left.parts().iter().max_by_key(area).ok_or(SheetError::Empty)?;
-    let falls_out = left.parts().iter().filter(|part| *part != holds).map(|part| {
+    let loose = left.parts().iter().filter(|part| *part != holds).flat_map(Part::contours);
+    let fallen =
+        Region::from_contours(grid, loose.cloned().collect()).expect("parts of a region are a region");
+    let piece = |part: &Part| {
         let (low, high) = part.exterior().bounds();
         let (low, high) = (grid.to_mm(low), grid.to_mm(high));
         let area_mm2 = part.contours().map(|c| c.area_mm2(grid)).sum();
         FallenPiece { position_mm: (low + high) / 2.0, size_mm: high - low, area_mm2 }
-    });
-    let falls_out = falls_out.collect();
-    let sign = Region::from_contours(grid, holds.contours().cloned().collect());
-    let sign = sign.expect("a part of a region is a region");
-    Ok(Carved { sign, plate: left, falls_out })
+    };
+    let falls_out = fallen.parts().iter().map(piece).collect();
+    Ok(Carved { plate: left, fallen, falls_out })
 }
 
 #[cfg(test)]
@@ -177,8 +178,7 @@ mod tests {
         let pattern = region(&[(0, 0, 20, 20), (5, 5, 10, 10), (8, 8, 2, 2), (25, 0, 5, 20)]);
         assert_eq!(counts(&pattern), (3, 1));
         let carved = carved(&pattern, SHEET, 1.0).unwrap();
-        assert_eq!(counts(&carved.sign), (1, 2));
-        assert_eq!(counts(&carved.plate), (2, 3));
+        assert_eq!((counts(&carved.plate), counts(&carved.fallen)), ((2, 3), (1, 1)));
         let [piece] = carved.falls_out[..] else { panic!("{:?}", carved.falls_out) };
         assert!((piece.area_mm2 - 96.0).abs() < 1e-4 && piece.size_mm.distance(DVec2::splat(10.0)) < 1e-6);
         assert!(piece.position_mm.distance(DVec2::new(25.0, 20.0)) < 1e-6, "{}", piece.position_mm);
@@ -187,8 +187,8 @@ mod tests {
     #[test]
     fn without_holes_nothing_falls_out() {
         let carved = carved(&region(&[(0, 0, 20, 20), (22, 0, 5, 5)]), SHEET, 1.0).unwrap();
-        assert_eq!((counts(&carved.sign), carved.falls_out.len()), ((1, 2), 0));
-        assert!((carved.sign.area_mm2() - (2400.0 - 425.0)).abs() < 1e-4);
+        assert_eq!((counts(&carved.plate), carved.falls_out.len()), ((1, 2), 0));
+        assert!((carved.plate.area_mm2() - (2400.0 - 425.0)).abs() < 1e-4);
     }
 
     #[test]
