@@ -2,13 +2,14 @@
 //!
 //! A part that is cut out drops, or shifts, and what is still to be cut inside of it comes out in the wrong place. So
 //! contours go by their depth, the number of contours around them, the deepest first. Among those of one depth the
-//! next is the one with the joint nearest to where the beam is, and it begins there. Excluded: the shortest way of all.
+//! next is the one with the joint nearest to where the beam is, and it begins there; among arcs, at a joint that a line ends
+//! in, so that it is met exactly. Excluded: the shortest way of all.
 
 use glam::DVec2;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 
-use super::outline::Outline;
+use super::outline::{Outline, Segment};
 use crate::planar::{Contour, Region};
 
 /// The outlines in the order in which they are cut, from `at` on. `outlines` are those of the region's contours.
@@ -19,7 +20,12 @@ pub(super) fn ordered(region: &Region, outlines: Vec<Outline>, at: &mut DVec2) -
     for depth in (0..=depths.iter().copied().max().unwrap_or(0)).rev() {
         let joints = |i: usize, outline: &Outline| {
             let entry = |(k, p): (usize, DVec2)| GeomWithData::new(p.to_array(), (i, k));
-            outline.joints().enumerate().map(entry).collect::<Vec<_>>()
+            outline
+                .joints()
+                .enumerate()
+                .filter(|(k, _)| may_begin(outline, *k))
+                .map(entry)
+                .collect::<Vec<_>>()
         };
         let of_depth = left.iter().enumerate().filter(|(i, _)| depths[*i] == depth);
         let entries = of_depth.flat_map(|(i, outline)| outline.iter().flat_map(move |o| joints(i, o)));
@@ -36,6 +42,13 @@ pub(super) fn ordered(region: &Region, outlines: Vec<Outline>, at: &mut DVec2) -
         }
     }
     ordered
+}
+
+/// Whether the path may begin at joint `k`: anywhere, but where there are lines and arcs only behind a line.
+fn may_begin(outline: &Outline, k: usize) -> bool {
+    let n = outline.segments.len();
+    let is_arc = |segment: &Segment| matches!(segment, Segment::Arc(..));
+    !is_arc(&outline.segments[(k + n - 1) % n]) || outline.segments.iter().all(is_arc)
 }
 
 /// How many contours are around each.

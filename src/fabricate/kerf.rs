@@ -18,6 +18,9 @@ const FRAME_KERFS: f64 = 4.0;
 const ROUNDS: u32 = 8;
 /// Residues that are tried out, the largest first. The place is nearly always the first; the rest are sharp tips.
 const TRIED: usize = 40;
+/// Edges shorter than this part of the chord error are left out. Less, and fitted curves meet bends that are none; more,
+/// and the kerf is off by it.
+const SHORTEST_PART: f64 = 0.01;
 /// Chords of round joins are at most this part of the radius, as they make an offset too small.
 const ARC_PART: f64 = 0.002;
 
@@ -64,6 +67,17 @@ pub enum KerfError {
     Grid(#[from] GridError),
 }
 
+/// Refuses a kerf that no beam has.
+///
+/// # Errors
+/// [`KerfError::Range`].
+pub fn check_kerf(kerf_mm: f64) -> Result<(), KerfError> {
+    match (1e-3..=10.0).contains(&kerf_mm) {
+        true => Ok(()),
+        false => Err(KerfError::Range { found_mm: kerf_mm }),
+    }
+}
+
 /// The region whose contours a beam of width `kerf_mm` has to follow so that `region` is left: the ink grown by
 /// half of the kerf, with the same components and holes. Round corners are kept within `chord_mm`.
 ///
@@ -71,9 +85,7 @@ pub enum KerfError {
 /// [`KerfError::Gap`] and [`KerfError::Feature`] name the first place that is narrower than the kerf: where the counts
 /// would change if gaps, or ink, lost half of it on either side. Sharp tips and the ends of notches are none.
 pub fn compensated(region: &Region, kerf_mm: f64, chord_mm: f64) -> Result<Region, KerfError> {
-    if !(1e-3..=10.0).contains(&kerf_mm) {
-        return Err(KerfError::Range { found_mm: kerf_mm });
-    }
+    check_kerf(kerf_mm)?;
     let (low, high) = region.bounds_mm().ok_or(KerfError::Empty)?;
     let radius_mm = 0.5 * kerf_mm;
     let margin = DVec2::splat(FRAME_KERFS * kerf_mm + chord_mm);
@@ -96,7 +108,7 @@ pub fn compensated(region: &Region, kerf_mm: f64, chord_mm: f64) -> Result<Regio
         return Err(KerfError::Gap { position_mm, width_mm, kerf_mm });
     };
     match without_frame(grid, &pieces) {
-        Ok(grown) => Ok(grown),
+        Ok(grown) => Ok(without_short_edges(grown, grid.steps(SHORTEST_PART * chord_mm))),
         Err(RegionError::Grid(error)) => Err(error.into()),
         Err(RegionError::Invalid { faults }) => unreachable!("pieces of a region are disjoint: {faults:?}"),
     }
@@ -110,6 +122,24 @@ fn without_frame(grid: Grid, gaps: &[Part]) -> Result<Region, RegionError> {
         part.contours().skip(usize::from(is_frame))
     });
     Region::from_contours(grid, contours.map(reversed).collect())
+}
+
+/// The region without edges of so few steps, which offsets leave where arcs meet, if it is none the worse for it.
+fn without_short_edges(region: Region, shortest: i64) -> Region {
+    let cleaned = region.contours().map(|contour| {
+        let mut path: Vec<GridPoint> = Vec::with_capacity(contour.points().len());
+        for &p in contour.points() {
+            let near = |q: &GridPoint| (p.x - q.x).abs().max((p.y - q.y).abs()) < shortest;
+            if !path.last().is_some_and(near) && !path.first().is_some_and(near) {
+                path.push(p);
+            }
+        }
+        Contour::new(path)
+    });
+    let cleaned: Option<Vec<Contour>> = cleaned.collect();
+    let counts = |region: &Region| (region.components(), region.holes());
+    let cleaned = cleaned.and_then(|contours| Region::from_contours(region.grid(), contours).ok());
+    cleaned.filter(|cleaned| counts(cleaned) == counts(&region)).unwrap_or(region)
 }
 
 /// The contour the other way round.

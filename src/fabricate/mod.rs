@@ -19,7 +19,7 @@ mod snap;
 mod solid;
 
 pub use bridge::{Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts, bridge};
-pub use kerf::{KerfError, compensated};
+pub use kerf::{KerfError, check_kerf, compensated};
 pub use sheet::{Carved, FallenPiece, SheetError, SheetSize, carved, on_sheet, plate};
 pub use snap::snapped_to_f32;
 pub use solid::{Solid, extrude};

@@ -21,6 +21,19 @@ pub struct SheetSize {
     pub height_mm: f64,
 }
 
+impl SheetSize {
+    /// Refuses what is no plate.
+    ///
+    /// # Errors
+    /// [`SheetError::Size`].
+    pub fn check(self) -> Result<(), SheetError> {
+        match [self.width_mm, self.height_mm].iter().all(|side| (1.0..=1e4).contains(side)) {
+            true => Ok(()),
+            false => Err(SheetError::Size { found: self }),
+        }
+    }
+}
+
 impl fmt::Display for SheetSize {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} x {} mm", self.width_mm, self.height_mm)
@@ -91,10 +104,8 @@ pub struct Carved {
 /// # Errors
 /// [`SheetError`] for a plate that is none, or on which the part does not fit.
 pub fn on_sheet(part: &Region, sheet: SheetSize, edge_mm: f64) -> Result<Region, SheetError> {
+    sheet.check()?;
     let size_mm = DVec2::new(sheet.width_mm, sheet.height_mm);
-    if ![sheet.width_mm, sheet.height_mm].iter().all(|side| (1.0..=1e4).contains(side)) {
-        return Err(SheetError::Size { found: sheet });
-    }
     let (low, high) = part.bounds_mm().ok_or(SheetError::Empty)?;
     let part_mm = high - low;
     if (part_mm + 2.0 * edge_mm).cmpgt(size_mm).any() {

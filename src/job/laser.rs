@@ -58,8 +58,10 @@ impl LaserOptions {
     /// Refuses options that contradict each other or the outputs.
     ///
     /// # Errors
-    /// [`JobError::Option`] names the option.
+    /// [`JobError::Option`] names the option; [`JobError::Kerf`] and [`JobError::Sheet`] for one out of range.
     pub fn check(&self, outputs: &[Output]) -> Result<(), JobError> {
+        self.kerf_mm.map_or(Ok(()), fabricate::check_kerf)?;
+        self.sheet.map_or(Ok(()), SheetSize::check)?;
         let refuse = |option, found: &str, wanted: &str| {
             Err(JobError::Option { option, found: found.to_owned(), wanted: wanted.to_owned() })
         };
