@@ -3,6 +3,7 @@
 use std::process::ExitCode;
 
 use super::args::ExtrudeArguments;
+use super::laser::say_cuts;
 use super::progress::Progress;
 use super::run::{CliError, output, print_json, refuse_json_beside, say_bridges, say_notes};
 use crate::job::{ExtrudeBridges, ExtrudeReport, Format, Output, extrude};
@@ -19,9 +20,16 @@ pub(super) fn run(arguments: &ExtrudeArguments) -> Result<ExitCode, CliError> {
         holes: arguments.holes.and_then(|count| count.0),
     });
     let progress = Progress::new(arguments.quiet, outputs.iter().map(Output::target));
-    let made = extrude(&arguments.file, arguments.thickness, &tolerances, bridges, &outputs, &mut |stage| {
-        progress.show(stage)
-    })?;
+    let laser = arguments.laser.options();
+    let made = extrude(
+        &arguments.file,
+        arguments.thickness,
+        &tolerances,
+        bridges,
+        &laser,
+        &outputs,
+        &mut |stage| progress.show(stage),
+    )?;
     drop(progress);
     if arguments.json {
         print_json(&made)?;
@@ -44,6 +52,7 @@ fn say_made(made: &ExtrudeReport) {
         None => say!("{} component(s), {} hole(s)", made.components, made.holes),
     }
     say_bridges(made.bridges.as_ref(), "--json lists their positions, and a .png shows them in colour");
+    say_cuts(made.laser.as_ref());
     say_notes(&made.notes);
     for file in &made.files {
         say!("wrote {file}");

@@ -62,6 +62,7 @@ impl Progress {
             Stage::Map => "mapping along the curve",
             Stage::Bridge => "laying bridges",
             Stage::Svg => "drawing",
+            Stage::CutLines => "laying out the cuts",
             Stage::Stl => "building the solid",
             Stage::Png => "painting the picture",
             Stage::Verify => "reading the files again and counting",

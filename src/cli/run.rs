@@ -8,6 +8,7 @@ use thiserror::Error;
 use super::args::{
     AnalyzeArguments, Arguments, BandArguments, Command, PatternArguments, ToleranceArguments,
 };
+use super::laser::say_cuts;
 use super::progress::Progress;
 use super::{extrude, rect, verify};
 use crate::analysis::{Analysis, AnalysisError};
@@ -39,7 +40,7 @@ pub(super) enum CliError {
     Uncertified { file: String, error: CertificateError },
     #[error("{file}: {report}")]
     Refuted { file: String, report: Box<CertificateReport> },
-    #[error("{file}: the name does not say what it is; verify reads .svg and .stl")]
+    #[error("{file}: the name does not say what it is; verify reads .svg, .dxf and .stl")]
     UnknownKind { file: String },
     #[error(transparent)]
     Analysis(#[from] AnalysisError),
@@ -206,6 +207,7 @@ pub(super) fn with_pattern(builder: BandBuilder, a: &PatternArguments) -> BandBu
         .jump_cost(a.jump_cost)
         .stitch(a.stitch)
         .memory_limit(a.memory_limit)
+        .laser(a.laser.options())
         .thickness_mm(a.thickness)
         .chord_mm(a.tolerances.chord)
         .min_feature_mm(a.tolerances.min_feature.unwrap_or(0.0))
@@ -260,6 +262,7 @@ pub(super) fn say_found(made: &MadeReport) {
         let p = narrowest.position_mm;
         say!("narrowest {what} {:.3} mm, at ({:.1}, {:.1}) mm", narrowest.width_mm, p.x, p.y);
     }
+    say_cuts(made.laser.as_ref());
     say_notes(&made.notes);
     for file in &made.files {
         say!("wrote {file}");
@@ -279,10 +282,11 @@ fn run_analyze(arguments: &AnalyzeArguments) -> Result<ExitCode, CliError> {
         arguments.output.iter().map(|path| output(path, Format::Svg)).collect::<Result<_, _>>()?;
     Output::check(outputs.iter().map(Output::target), &[&arguments.exemplar])?;
     refuse_json_beside(arguments.json, &outputs)?;
-    if let Some(stl) = outputs.iter().find(|o| o.format() == Format::Stl) {
+    let is_other = |format| matches!(format, Format::Stl | Format::Dxf);
+    if let Some(other) = outputs.iter().find(|o| is_other(o.format())) {
         return Err(CliError::Job(JobError::Option {
             option: "--output",
-            found: format!("{} is a solid", stl.target()),
+            found: format!("{} is a part to be made", other.target()),
             wanted: "an overlay is a picture: end the name in .svg or .png".to_owned(),
         }));
     }
@@ -302,7 +306,7 @@ fn run_analyze(arguments: &AnalyzeArguments) -> Result<ExitCode, CliError> {
     let analysis = Analysis::keeping(&exemplar, rule, &arguments.keep, &tolerances, &CostWeights::default())?;
     write_all(&outputs, |format| match format {
         Format::Png => analysis.overlay_png(OVERLAY_PIXELS).map_err(JobError::from),
-        Format::Svg | Format::Stl => Ok(analysis.overlay_svg().into_bytes()),
+        Format::Svg | Format::Dxf | Format::Stl => Ok(analysis.overlay_svg().into_bytes()),
     })?;
     if arguments.json {
         print_json(&analysis)?;

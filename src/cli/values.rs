@@ -1,7 +1,7 @@
 //! Values of options as they are typed.
 
 use crate::domain::{CurveSpec, RectSize, parse_length_mm};
-use crate::job::{KeptRange, SlicingChoice, StitchMethod, Wanted, WantedError};
+use crate::job::{KeptRange, SheetSize, SlicingChoice, StitchMethod, Wanted, WantedError};
 use crate::verify::Between;
 
 /// A length in millimetres: `12mm`, `1.2cm`, `0.5in`, `34pt`, `45px` or `12`.
@@ -32,6 +32,11 @@ pub(super) fn curve(text: &str) -> Result<CurveSpec, String> {
 /// A size: `120x80mm`.
 pub(super) fn size(text: &str) -> Result<RectSize, String> {
     text.parse::<RectSize>().map_err(|e| e.to_string())
+}
+
+/// The size of a plate: `300x200mm`.
+pub(super) fn sheet(text: &str) -> Result<SheetSize, String> {
+    size(text).map(|size| SheetSize { width_mm: size.width_mm(), height_mm: size.height_mm() })
 }
 
 /// How many of something: `None` when any number will do. (A name of its own, as the parser of arguments gives

@@ -33,6 +33,8 @@ const LEAST_RING: f64 = 0.01;
 pub struct Marks<'m> {
     /// Struts are orange, slits are green.
     pub bridges: &'m [Bridge],
+    /// What falls out of the region when it is cut; orange.
+    pub fallen: Option<&'m Region>,
     /// Lines across the band where two pieces meet, in millimetres; light blue.
     pub seams_mm: &'m [Vec<DVec2>],
     /// Places that are narrow: the middle and the width, in millimetres; a red ring around each.
@@ -70,6 +72,13 @@ pub fn png(region: &Region, marks: &Marks<'_>, longer_side: u32) -> Result<Vec<u
         }
         sheet.fill(path, FillRule::Winding, colour)?;
     }
+    let mut fallen = PathBuilder::new();
+    for region in marks.fallen {
+        for contour in region.contours() {
+            sheet.trace(&mut fallen, contour.points().iter().map(|&p| region.grid().to_mm(p)), true);
+        }
+    }
+    sheet.fill(fallen, FillRule::EvenOdd, STRUT)?;
     let mut seams = PathBuilder::new();
     for seam in marks.seams_mm {
         sheet.trace(&mut seams, seam.iter().copied(), false);

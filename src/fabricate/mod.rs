@@ -6,16 +6,21 @@
 //! vertices. The solid is therefore closed by construction and writing it changes nothing: a region of b0
 //! components and b1 holes becomes b0 shells of total genus b1.
 //!
-//! Before that, bridges may give the region other counts ([`bridge()`]).
+//! Before that, bridges may give the region other counts ([`bridge()`]). For a beam instead of a printer, contours
+//! make room for the kerf ([`compensated`]), and the part lies on a plate or is carved out of it ([`on_sheet`], [`carved`]).
 //!
-//! Excluded: files, curved fronts, kerf. Nothing here knows how the region came to be.
+//! Excluded: files, curved fronts. Nothing here knows how the region came to be.
 
 mod bridge;
 mod caps;
+mod kerf;
+mod sheet;
 mod snap;
 mod solid;
 
 pub use bridge::{Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts, bridge};
+pub use kerf::{KerfError, check_kerf, compensated};
+pub use sheet::{Carved, FallenPiece, SheetError, SheetSize, carved, on_sheet, plate};
 pub use snap::snapped_to_f32;
 pub use solid::{Solid, extrude};
 

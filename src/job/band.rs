@@ -12,6 +12,7 @@ use super::cut::{Cut, read_exemplar, slice};
 use super::describe::describe;
 use super::error::JobError;
 use super::extrude::{check_stl, file_name, name};
+use super::laser::Cutting;
 use super::output::{Format, Output, Pending, Target, persist};
 use super::part::{Part, PartError};
 use super::plan::Plan;
@@ -273,6 +274,11 @@ impl Band {
             }
             error => error,
         })?;
+        let laser = &self.job.options.laser;
+        let mut cutting = match laser.is_needed(outputs) {
+            true => Some(clock.time(Stage::CutLines, || self.cutting())?),
+            false => None,
+        };
         let mut pending = Vec::new();
         let mut digests = Vec::new();
         let mut digest = |output: &Output, bytes: &[u8]| {
@@ -280,7 +286,17 @@ impl Band {
             digests.push(FileDigest { file, format: output.format().name(), sha256: sha256(bytes) });
         };
         for output in outputs {
+            if let Some(cutting) = cutting.as_mut().filter(|_| laser.makes(output.format())) {
+                let (item, bytes) = cutting.write(output, &mut clock)?;
+                // A certificate counts the pattern, and not what is left around it.
+                if laser.cuts(output.format()) && !laser.carve {
+                    digest(output, &bytes);
+                }
+                pending.push(item);
+                continue;
+            }
             let item = match output.format() {
+                Format::Dxf => unreachable!("a DXF has cut lines"),
                 Format::Svg => {
                     report.made.svg_segments = Some([drawing.lines, drawing.cubics]);
                     digest(output, drawing.text.as_bytes());
@@ -321,6 +337,7 @@ impl Band {
                 narrowest.width_mm
             ));
         }
+        report.made.laser = cutting.map(|cutting| cutting.report);
         report.made.certificate.seal([found.components, found.holes], digests);
         report.components = found.components;
         report.holes = found.holes;
@@ -367,6 +384,14 @@ impl Band {
             )),
         };
         Ok(export::svg(&self.part.region, &options)?)
+    }
+
+    /// The part as cut lines.
+    fn cutting(&self) -> Result<Cutting, JobError> {
+        let chord_mm = self.job.tolerances.chord_mm();
+        let of = format!("{} of {}", self.report.generator, file_name(&self.job.options.exemplar));
+        let laser = &self.job.options.laser;
+        Cutting::new(laser, &self.part.region, self.part.page_mm, [chord_mm, chord_mm * SVG_SHARE], of)
     }
 
     /// The part as a binary STL solid.

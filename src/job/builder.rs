@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use super::band::Band;
 use super::choice::Choice;
 use super::error::JobError;
+use super::laser::LaserOptions;
 use super::output::{Output, Target};
 use super::plan::DEFAULT_MEMORY_LIMIT;
 use super::stage::Stage;
@@ -48,6 +49,7 @@ pub struct BandBuilder {
     pub(super) choice: Choice,
     pub(super) counted: bool,
     pub(super) memory_limit: usize,
+    pub(super) laser: LaserOptions,
     chord_mm: f64,
     min_feature_mm: f64,
     min_gap_mm: f64,
@@ -77,6 +79,7 @@ impl BandBuilder {
             choice: Choice::default(),
             counted: false,
             memory_limit: DEFAULT_MEMORY_LIMIT,
+            laser: LaserOptions::default(),
             chord_mm: Tolerances::DEFAULT_CHORD_MM,
             min_feature_mm: 0.0,
             min_gap_mm: 0.0,
@@ -205,6 +208,12 @@ impl BandBuilder {
         self
     }
 
+    /// What files of cut lines are to be like.
+    pub fn laser(mut self, laser: LaserOptions) -> Self {
+        self.laser = laser;
+        self
+    }
+
     /// The width of bridges: where the ornament cannot give the components or holes that are asked for, or only at a
     /// higher cost than with bridges, struts of this width join components and slits of this width open holes. A
     /// bridge costs as much as half a jump. Without a width there are none, and what cannot be had is refused.
@@ -273,12 +282,14 @@ pub struct BandJob {
 }
 
 impl BandJob {
-    /// Refuses outputs that would overwrite each other or an input, or that cannot be files. Writing does so
+    /// Refuses outputs that would overwrite each other or an input, that cannot be files, or that contradict the
+    /// options for cut lines. Writing does so
     /// too; a job takes a while, though, and this can be known before it.
     ///
     /// # Errors
     /// As [`Output::check`].
     pub fn check_outputs(&self, outputs: &[Output], report_file: Option<&Target>) -> Result<(), JobError> {
+        self.options.laser.check(outputs)?;
         let curve = match &self.options.along {
             CurveSpec::Path { file, .. } => Some(file.as_path()),
             CurveSpec::Line { .. } | CurveSpec::Circle { .. } => None,

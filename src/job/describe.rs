@@ -111,6 +111,7 @@ pub(super) fn describe(
             page_mm: part.page_mm.to_array(),
             vertices: part.region.vertices(),
             svg_segments: None,
+            laser: None,
             triangles: None,
             shells: None,
             genus: None,

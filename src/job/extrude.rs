@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::bridging::{self, BridgesReport};
 use super::error::JobError;
+use super::laser::{Cutting, LaserOptions, LaserReport};
 use super::output::{Format, Output, Pending, Target, persist};
 use super::report::{InputReport, StageTime};
 use super::stage::{Clock, Stage};
@@ -39,6 +40,8 @@ pub struct ExtrudeReport {
     pub solid: Option<StlReport>,
     /// What was found in the SVG, if one was written.
     pub drawing: Option<SvgReport>,
+    /// The files of cut lines, if some were written.
+    pub laser: Option<LaserReport>,
     /// The files that were written.
     pub files: Vec<String>,
     /// What the user may want to know.
@@ -59,8 +62,8 @@ pub struct ExtrudeBridges {
 }
 
 /// Extrudes the drawing in `file` to a solid `thickness_mm` high, with `bridges` laid before, and writes each output,
-/// verified: the solid as STL, the outline that it has as SVG on the drawing's own page, and a picture of it with its
-/// bridges.
+/// verified: the solid as STL, the outline that it has as SVG on the drawing's own page, cut lines as `laser` says, and a
+/// picture of it with its bridges.
 ///
 /// # Errors
 /// [`JobError`] for a drawing that cannot be represented, a thickness out of range, and a file that cannot be
@@ -70,10 +73,12 @@ pub fn extrude(
     thickness_mm: f64,
     tolerances: &Tolerances,
     bridges: Option<ExtrudeBridges>,
+    laser: &LaserOptions,
     outputs: &[Output],
     progress: &mut dyn FnMut(Stage),
 ) -> Result<ExtrudeReport, JobError> {
     Output::check(outputs.iter().map(Output::target), &[file])?;
+    laser.check(outputs)?;
     let mut clock = Clock::new(progress);
     let options = ReadOptions {
         chord_mm: tolerances.chord_mm() * READ_SHARE,
@@ -93,11 +98,26 @@ pub fn extrude(
         holes: Some(region.holes().into()),
         ..Expected::default()
     };
+    let mut cutting = match laser.is_needed(outputs) {
+        true => {
+            let page_mm = DVec2::from(drawing.page_mm());
+            let chord_mm = tolerances.chord_mm();
+            let chords_mm = [chord_mm, chord_mm * (1.0 - READ_SHARE)];
+            let of = format!("{} of {}", generator(), file_name(file));
+            Some(clock.time(Stage::CutLines, || Cutting::new(laser, &region, page_mm, chords_mm, of))?)
+        }
+        false => None,
+    };
     let (mut solid, mut drawn) = (None, None);
     let mut pending = Vec::with_capacity(outputs.len());
     for output in outputs {
         let target = output.target();
+        if let Some(cutting) = cutting.as_mut().filter(|_| laser.makes(output.format())) {
+            pending.push(cutting.write(output, &mut clock)?.0);
+            continue;
+        }
         let item = match output.format() {
+            Format::Dxf => unreachable!("a DXF has cut lines"),
             Format::Stl => {
                 let bytes = clock.time(Stage::Stl, || stl(&region, thickness_mm))?;
                 let item = Pending::new(target, bytes)?;
@@ -131,6 +151,7 @@ pub fn extrude(
         bridges,
         solid,
         drawing: drawn,
+        laser: cutting.map(|cutting| cutting.report),
         files: outputs.iter().map(|output| output.target().to_string()).collect(),
         notes,
         times: clock.times,

@@ -11,6 +11,8 @@ use crate::export::{self, ExportError};
 pub enum Format {
     /// An SVG drawing in millimetres.
     Svg,
+    /// A DXF of cut lines in millimetres.
+    Dxf,
     /// A binary STL solid in millimetres.
     Stl,
     /// A picture to look at.
@@ -22,6 +24,7 @@ impl Format {
     pub fn name(self) -> &'static str {
         match self {
             Self::Svg => "svg",
+            Self::Dxf => "dxf",
             Self::Stl => "stl",
             Self::Png => "png",
         }
@@ -73,7 +76,7 @@ pub struct Output {
 }
 
 impl Output {
-    /// A file whose extension says the format: `.svg`, `.stl` or `.png`.
+    /// A file whose extension says the format: `.svg`, `.dxf`, `.stl` or `.png`.
     ///
     /// # Errors
     /// [`JobError::Option`] for another extension.
@@ -82,14 +85,16 @@ impl Output {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
         let format = match extension.as_str() {
             "svg" => Format::Svg,
+            "dxf" => Format::Dxf,
             "stl" => Format::Stl,
             "png" => Format::Png,
             _ => {
                 return Err(JobError::Option {
                     option: "--output",
                     found: format!("{} does not say a format", path.display()),
-                    wanted: "end the name in .svg, .stl or .png (or use - for an SVG on standard output)"
-                        .to_owned(),
+                    wanted:
+                        "end the name in .svg, .dxf, .stl or .png (or use - for an SVG on standard output)"
+                            .to_owned(),
                 });
             }
         };

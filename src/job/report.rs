@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::bridging::BridgesReport;
 use super::certificate::Certificate;
 use super::json;
+use super::laser::LaserReport;
 use super::ways::WayReport;
 use crate::domain::Squeeze;
 use crate::solver::Tally;
@@ -196,6 +197,8 @@ pub struct MadeReport {
     pub vertices: usize,
     /// Straight segments and cubics in the SVG, if one was written.
     pub svg_segments: Option<[usize; 2]>,
+    /// The files of cut lines, if some were written.
+    pub laser: Option<LaserReport>,
     /// Facets of the STL, if one was written.
     pub triangles: Option<usize>,
     /// Shells of the STL.

@@ -21,6 +21,8 @@ pub enum Stage {
     Bridge,
     /// The SVG file.
     Svg,
+    /// Kerf, plate and the files of cut lines.
+    CutLines,
     /// The solid and the STL file.
     Stl,
     /// The picture.
@@ -31,7 +33,7 @@ pub enum Stage {
 
 impl Stage {
     /// All stages.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Read,
         Self::Slice,
         Self::Solve,
@@ -39,6 +41,7 @@ impl Stage {
         Self::Map,
         Self::Bridge,
         Self::Svg,
+        Self::CutLines,
         Self::Stl,
         Self::Png,
         Self::Verify,
@@ -54,6 +57,7 @@ impl Stage {
             Self::Map => "map",
             Self::Bridge => "bridge",
             Self::Svg => "svg",
+            Self::CutLines => "cut_lines",
             Self::Stl => "stl",
             Self::Png => "png",
             Self::Verify => "verify",

@@ -71,6 +71,22 @@ pub enum VerifyError {
         /// What is wrong with it.
         source: GridError,
     },
+    /// A coordinate of a cut line that is out of range or not a number.
+    #[error("{element}: {source}")]
+    CutCoordinate {
+        /// The element, with its line in the file.
+        element: String,
+        /// What is wrong with it.
+        source: GridError,
+    },
+    /// A DXF that cannot be read, or has what cannot be judged.
+    #[error("line {line}: {message}")]
+    Dxf {
+        /// Where.
+        line: u32,
+        /// What is wrong, and what would work.
+        message: String,
+    },
     /// A binary STL whose length does not agree with its header.
     #[error(
         "the header promises {triangles} triangles, which are {wanted} bytes, but the file has {found}: it was cut off or is no STL"

@@ -53,6 +53,12 @@ impl Replay<'_> {
         let sha256 = hexadecimal(bytes);
         let (format, found) = match counted {
             Counted::Svg(report) => ("svg", (report.components as i64, report.holes as i64)),
+            Counted::Cut(report, format) => {
+                if let Some(first) = report.faults.first() {
+                    self.fault(CertificatePlace::File, format!("the cut lines are not sound: {first}"));
+                }
+                (format, (report.components as i64, report.holes as i64))
+            }
             Counted::Stl(report) => {
                 if let Some(first) = report.faults.first() {
                     self.fault(CertificatePlace::File, format!("the solid is not sound: {first}"));

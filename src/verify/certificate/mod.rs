@@ -18,6 +18,7 @@ use serde_json::Value;
 
 use self::form::{Certificate, Shape, Steps, VERSION};
 use self::steps::Replay;
+use super::cutlines::CutReport;
 use super::shells::StlReport;
 use super::svg::SvgReport;
 
@@ -28,6 +29,8 @@ pub use fault::{CertificateError, CertificateFault, CertificatePlace, Certificat
 pub enum Counted<'a> {
     /// A drawing.
     Svg(&'a SvgReport),
+    /// Cut lines, in a file with this extension.
+    Cut(&'a CutReport, &'static str),
     /// A solid: a shell for each component, a tunnel for each hole.
     Stl(&'a StlReport),
 }
