@@ -73,10 +73,10 @@ pub fn png(region: &Region, marks: &Marks<'_>, longer_side: u32) -> Result<Vec<u
         sheet.fill(path, FillRule::Winding, colour)?;
     }
     let mut fallen = PathBuilder::new();
-    for region in marks.fallen {
-        for contour in region.contours() {
-            sheet.trace(&mut fallen, contour.points().iter().map(|&p| region.grid().to_mm(p)), true);
-        }
+    for (region, contour) in
+        marks.fallen.iter().flat_map(|region| region.contours().map(move |c| (region, c)))
+    {
+        sheet.trace(&mut fallen, contour.points().iter().map(|&p| region.grid().to_mm(p)), true);
     }
     sheet.fill(fallen, FillRule::EvenOdd, STRUT)?;
     let mut seams = PathBuilder::new();

@@ -199,9 +199,7 @@ impl Cutting {
     ) -> Result<(Pending, Vec<u8>), JobError> {
         let bytes = match output.format() {
             Format::Png => clock.time(Stage::Png, || {
-                let nothing = Region::empty(self.kept.grid());
-                let fallen = self.fallen.as_ref().unwrap_or(&nothing);
-                let marks = Marks { fallen: Some(fallen), ..Marks::default() };
+                let marks = Marks { fallen: self.fallen.as_ref(), ..Marks::default() };
                 export::png(&self.kept, &marks, export::DEFAULT_PIXELS)
             })?,
             Format::Svg => clock
