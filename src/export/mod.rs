@@ -1,26 +1,32 @@
-//! Files: SVG, STL and PNG writers, and outputs that appear whole or not at all.
+//! Files: SVG, STL, 3MF, OBJ and PNG writers, and outputs that appear whole or not at all.
 //!
 //! A writer turns a region or a solid into bytes; [`stage`] and [`persist_all`] turn bytes into files. The
 //! two are apart so that what was written can be read again and verified under its temporary name, before
 //! anything exists under the name that was asked for.
 //!
 //! What this room promises to the next: the curves of an SVG lie within the chord tolerance of the region
-//! and have its components and holes; an STL has the solid's coordinates unrounded; the same input gives the
+//! and have its components and holes; STL, 3MF and OBJ have the solid's coordinates unrounded; the same input gives the
 //! same bytes. Excluded: standard output, and how shapes came to be.
 
 mod clearance;
 mod curves;
+mod mesh;
+mod obj;
 mod outline;
 mod png;
 mod runs;
 mod staged;
 mod stl;
 mod svg;
+mod threemf;
 
+pub use mesh::MeshDocument;
+pub use obj::obj;
 pub use png::{DEFAULT_PIXELS, png, png_with_bridges};
 pub use staged::{Staged, check_destination, persist_all, remove_staged, stage};
 pub use stl::stl;
 pub use svg::{SvgDocument, SvgOptions, svg};
+pub use threemf::threemf;
 
 use std::io;
 use std::path::{Path, PathBuf};

@@ -8,16 +8,23 @@
 //!
 //! Before that, bridges may give the region other counts ([`bridge()`]).
 //!
+//! Walls may be bevelled or sloped ([`raise()`]).
+//!
 //! Excluded: files, curved fronts, kerf. Nothing here knows how the region came to be.
 
 mod bridge;
 mod caps;
+mod inset;
+mod profile;
+mod raise;
 mod snap;
 mod solid;
 
 pub use bridge::{Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts, bridge};
+pub use profile::Profile;
+pub use raise::raise;
 pub use snap::snapped_to_f32;
-pub use solid::{Solid, extrude};
+pub use solid::{Shell, Solid, extrude};
 
 use glam::DVec2;
 use thiserror::Error;
@@ -35,6 +42,36 @@ pub enum FabricateError {
     Thickness {
         /// What was given.
         found_mm: f64,
+    },
+    /// The chamfer is not a usable length.
+    #[error(
+        "the chamfer is {found_mm} mm; it must be at least 0.01 mm and less than half of the thickness of \
+         {thickness_mm} mm"
+    )]
+    Chamfer {
+        /// What was given.
+        found_mm: f64,
+        /// The thickness of the solid.
+        thickness_mm: f64,
+    },
+    /// The taper is not a usable angle.
+    #[error("the taper is {found_deg} degrees; it must be more than 0 and less than 45")]
+    Taper {
+        /// What was given.
+        found_deg: f64,
+    },
+    /// Walls cannot go in as far as they are to without changing components or holes.
+    #[error(
+        "near ({:.3}, {:.3}) mm the ink is too narrow for walls that go in by {inset_mm:.3} mm: components or \
+         holes would change; {remedy}", position_mm.x, position_mm.y
+    )]
+    Inset {
+        /// Where, in millimetres.
+        position_mm: DVec2,
+        /// How far the walls are to go in.
+        inset_mm: f64,
+        /// What would do.
+        remedy: String,
     },
     /// The region's extent does not fit the grid of 32-bit floats.
     #[error(transparent)]

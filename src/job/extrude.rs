@@ -15,7 +15,7 @@ use crate::export::{self, SvgOptions};
 use crate::fabricate::{self, Bridge, Counts};
 use crate::planar::{GridPoint, Region, Tolerances};
 use crate::topology::{Goal, Wanted};
-use crate::verify::{self, Expected, Mismatch, StlReport, SvgReport};
+use crate::verify::{self, Expected, MeshReport, Mismatch, SvgReport};
 
 /// The part of the chord error that is for flattening the drawing; the rest is for fitting curves to it again.
 const READ_SHARE: f64 = 0.5;
@@ -36,7 +36,7 @@ pub struct ExtrudeReport {
     /// The bridges, when some were asked for; the counts are with them.
     pub bridges: Option<BridgesReport>,
     /// What was found in the solid, if one was written.
-    pub solid: Option<StlReport>,
+    pub solid: Option<MeshReport>,
     /// What was found in the SVG, if one was written.
     pub drawing: Option<SvgReport>,
     /// The files that were written.
@@ -195,7 +195,7 @@ pub(super) fn check_stl(
     target: &Target,
     pending: &Pending,
     expected: &Expected,
-) -> Result<StlReport, JobError> {
+) -> Result<MeshReport, JobError> {
     let bytes = pending.read_again()?;
     let report =
         verify::read_stl(&bytes).map_err(|error| JobError::Unjudged { file: name(target), error })?;

@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use super::endure::{endures_dilation, endures_erosion};
 use super::narrowest::Narrowest;
-use super::shells::{StlFault, StlReport};
+use super::shells::{MeshFault, MeshReport};
 use super::svg::SvgReport;
 
 /// The numbers that are as expected: all from the least to the most, both included.
@@ -103,7 +103,7 @@ pub enum Mismatch {
         /// How many.
         count: usize,
         /// The first.
-        first: StlFault,
+        first: MeshFault,
     },
 }
 
@@ -138,7 +138,7 @@ impl SvgReport {
     }
 }
 
-impl StlReport {
+impl MeshReport {
     /// Whether the solid is sound and as `expected`: as many shells as components, a total genus of as many
     /// as holes. Widths are not looked at; the SVG of the same outline tells them.
     ///

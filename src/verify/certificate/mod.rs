@@ -18,7 +18,7 @@ use serde_json::Value;
 
 use self::form::{Certificate, Shape, Steps, VERSION};
 use self::steps::Replay;
-use super::shells::StlReport;
+use super::shells::MeshReport;
 use super::svg::SvgReport;
 
 pub use fault::{CertificateError, CertificateFault, CertificatePlace, CertificateReport};
@@ -29,7 +29,7 @@ pub enum Counted<'a> {
     /// A drawing.
     Svg(&'a SvgReport),
     /// A solid: a shell for each component, a tunnel for each hole.
-    Stl(&'a StlReport),
+    Stl(&'a MeshReport),
 }
 
 /// Replays the certificate of `report`, the JSON of a job, for a file with these bytes in which so much was
