@@ -204,8 +204,8 @@ fn an_output_that_cannot_be_a_file() {
     refuses("-o out.svg --report no/out.json", &["cannot write no/out.json", "make the directory first"]);
     refuses("-o folder.svg", &["cannot write folder.svg", "not a file", "give a file name"]);
     refuses("-o vine.svg/out.svg", &["cannot write vine.svg/out.svg", "give another directory"]);
-    refuses("-o out.dxf", &["--output", "out.dxf", ".svg, .stl or .png"]);
-    refuses("-o out", &["--output", "out does not say a format", ".svg, .stl or .png"]);
+    refuses("-o out.dxf", &["--output", "out.dxf", ".svg, .stl, .3mf, .obj or .png"]);
+    refuses("-o out", &["--output", "out does not say a format", ".svg, .stl, .3mf, .obj or .png"]);
     refuses("", &["--output <FILE>"]);
     room.refuses("extrude vine.svg -o out.dxf", 2, &["--output", "out.dxf does not say a format", ".stl"]);
     room.refuses(

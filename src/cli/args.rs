@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+use super::print::PrintArgs;
 use super::values;
 use crate::domain::{CurveSpec, RectSize};
 use crate::job::{KeptRange, SlicingChoice, StitchMethod};
@@ -19,10 +20,10 @@ pub struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
-    /// Synthesize a band along a line, a circle or any path, and write it as SVG, STL or PNG
+    /// Synthesize a band along a line, a circle or any path, and write it as SVG, STL, 3MF, OBJ or PNG
     #[command(after_help = BAND_HELP)]
     Band(Box<BandArguments>),
-    /// Synthesize a rectangle, in both directions, and write it as SVG, STL or PNG
+    /// Synthesize a rectangle, in both directions, and write it as SVG, STL, 3MF, OBJ or PNG
     #[command(after_help = RECT_HELP)]
     Rect(Box<RectArguments>),
     /// Show how an exemplar is understood: critical points, cuts, pieces, portals, descriptors
@@ -31,7 +32,7 @@ pub(super) enum Command {
     /// Extrude any SVG, as it is, to a verified solid
     #[command(after_help = EXTRUDE_HELP)]
     Extrude(ExtrudeArguments),
-    /// Count components and holes (SVG) or shells and genus (STL) of a file, and check them
+    /// Count components and holes (SVG) or shells and genus (STL, 3MF, OBJ) of a file, and check them
     #[command(after_help = VERIFY_HELP)]
     Verify(VerifyArguments),
 }
@@ -91,6 +92,8 @@ Lengths take mm, cm, in, pt or px (96 to the inch); a bare number is millimetres
 
 Examples:
   openwork extrude sign.svg --thickness 3mm -o sign.stl
+  With bevelled edges, for a printer of 220 mm:
+    openwork extrude sign.svg --thickness 3mm --chamfer 0.5mm --bed 220x220mm --place -o sign.3mf
   A stencil of one's own drawing in one piece, from which nothing falls out, and a picture of where the bridges are
   (struts orange, slits green):
     openwork extrude letters.svg --bridge 1mm --components 1 --holes 0 -o stencil.svg -o stencil.png
@@ -214,8 +217,10 @@ pub(super) struct PatternArguments {
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(super) bridge: Option<f64>,
     #[command(flatten)]
+    pub(super) print: PrintArgs,
+    #[command(flatten)]
     pub(super) tolerances: ToleranceArguments,
-    /// A file to write: .svg, .stl or .png; may be repeated; - is SVG on standard output
+    /// A file to write: .svg, .stl, .3mf, .obj or .png; may be repeated; - is SVG on standard output
     #[arg(short, long, value_name = "FILE", required = true)]
     pub(super) output: Vec<PathBuf>,
     /// Write a report of what was asked for, made and measured (JSON; - for standard output)
@@ -287,7 +292,10 @@ pub(super) struct ExtrudeArguments {
     /// Greatest distance between a curve and its chords
     #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "0.01mm", allow_hyphen_values = true)]
     pub(super) chord: f64,
-    /// A file to write: .stl, .svg (the outline, with its bridges) or .png; may be repeated; - is STL on standard output
+    #[command(flatten)]
+    pub(super) print: PrintArgs,
+    /// A file to write: .stl, .3mf, .obj, .svg (the outline, with its bridges) or .png; may be repeated; - is STL on
+    /// standard output
     #[arg(short, long, value_name = "FILE", required = true)]
     pub(super) output: Vec<PathBuf>,
     /// Print what was made and found as JSON on standard output, each bridge with its position
@@ -300,7 +308,7 @@ pub(super) struct ExtrudeArguments {
 
 #[derive(Debug, Args)]
 pub(super) struct VerifyArguments {
-    /// The file (.svg or .stl)
+    /// The file (.svg, .stl, .3mf or .obj)
     pub(super) file: PathBuf,
     /// The report that was written with the file: replay its certificate, step by step
     #[arg(long, value_name = "REPORT.json")]
@@ -311,10 +319,10 @@ pub(super) struct VerifyArguments {
     /// It must be a tile: opposite sides match, so that copies join (SVG). Tells what the tiling has
     #[arg(long)]
     pub(super) tiles: bool,
-    /// Components (SVG) or shells (STL) that it must have: a number, a range with both ends as 1..2, or any
+    /// Components (SVG) or shells (solids) that it must have: a number, a range with both ends as 1..2, or any
     #[arg(long, value_name = "N", value_parser = values::wanted, default_value = "any", hide_default_value = true, allow_negative_numbers = true)]
     pub(super) components: values::Count,
-    /// Holes (SVG) or total genus (STL) that it must have: a number, a range or any
+    /// Holes (SVG) or total genus (solids) that it must have: a number, a range or any
     #[arg(long, value_name = "M", value_parser = values::wanted, default_value = "any", hide_default_value = true, allow_negative_numbers = true)]
     pub(super) holes: values::Count,
     #[command(flatten)]

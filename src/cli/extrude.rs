@@ -19,9 +19,16 @@ pub(super) fn run(arguments: &ExtrudeArguments) -> Result<ExitCode, CliError> {
         holes: arguments.holes.and_then(|count| count.0),
     });
     let progress = Progress::new(arguments.quiet, outputs.iter().map(Output::target));
-    let made = extrude(&arguments.file, arguments.thickness, &tolerances, bridges, &outputs, &mut |stage| {
-        progress.show(stage)
-    })?;
+    let print = arguments.print.options();
+    let made = extrude(
+        &arguments.file,
+        arguments.thickness,
+        &print,
+        &tolerances,
+        bridges,
+        &outputs,
+        &mut |stage| progress.show(stage),
+    )?;
     drop(progress);
     if arguments.json {
         print_json(&made)?;

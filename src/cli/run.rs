@@ -39,7 +39,7 @@ pub(super) enum CliError {
     Uncertified { file: String, error: CertificateError },
     #[error("{file}: {report}")]
     Refuted { file: String, report: Box<CertificateReport> },
-    #[error("{file}: the name does not say what it is; verify reads .svg and .stl")]
+    #[error("{file}: the name does not say what it is; verify reads .svg, .stl, .3mf and .obj")]
     UnknownKind { file: String },
     #[error(transparent)]
     Analysis(#[from] AnalysisError),
@@ -207,6 +207,7 @@ pub(super) fn with_pattern(builder: BandBuilder, a: &PatternArguments) -> BandBu
         .stitch(a.stitch)
         .memory_limit(a.memory_limit)
         .thickness_mm(a.thickness)
+        .print(a.print.options())
         .chord_mm(a.tolerances.chord)
         .min_feature_mm(a.tolerances.min_feature.unwrap_or(0.0))
         .min_gap_mm(a.tolerances.min_gap.unwrap_or(0.0));
@@ -279,10 +280,10 @@ fn run_analyze(arguments: &AnalyzeArguments) -> Result<ExitCode, CliError> {
         arguments.output.iter().map(|path| output(path, Format::Svg)).collect::<Result<_, _>>()?;
     Output::check(outputs.iter().map(Output::target), &[&arguments.exemplar])?;
     refuse_json_beside(arguments.json, &outputs)?;
-    if let Some(stl) = outputs.iter().find(|o| o.format() == Format::Stl) {
+    if let Some(solid) = outputs.iter().find(|o| o.format().is_solid()) {
         return Err(CliError::Job(JobError::Option {
             option: "--output",
-            found: format!("{} is a solid", stl.target()),
+            found: format!("{} is a solid", solid.target()),
             wanted: "an overlay is a picture: end the name in .svg or .png".to_owned(),
         }));
     }
@@ -302,7 +303,7 @@ fn run_analyze(arguments: &AnalyzeArguments) -> Result<ExitCode, CliError> {
     let analysis = Analysis::keeping(&exemplar, rule, &arguments.keep, &tolerances, &CostWeights::default())?;
     write_all(&outputs, |format| match format {
         Format::Png => analysis.overlay_png(OVERLAY_PIXELS).map_err(JobError::from),
-        Format::Svg | Format::Stl => Ok(analysis.overlay_svg().into_bytes()),
+        Format::Svg | Format::Stl | Format::Threemf | Format::Obj => Ok(analysis.overlay_svg().into_bytes()),
     })?;
     if arguments.json {
         print_json(&analysis)?;

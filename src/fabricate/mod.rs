@@ -8,19 +8,25 @@
 //!
 //! Before that, bridges may give the region other counts ([`bridge()`]).
 //!
-//! Walls may be bevelled or sloped ([`raise()`]).
+//! Walls may be bevelled or sloped
+//! ([`raise()`]), the number of triangles limited ([`raise_within`]), and the part turned to fit a printer ([`Bed`]).
 //!
 //! Excluded: files, curved fronts, kerf. Nothing here knows how the region came to be.
 
+mod bed;
 mod bridge;
 mod caps;
 mod inset;
+mod limit;
 mod profile;
 mod raise;
+mod simplify;
 mod snap;
 mod solid;
 
+pub use bed::Bed;
 pub use bridge::{Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts, bridge};
+pub use limit::{Limited, raise_within};
 pub use profile::Profile;
 pub use raise::raise;
 pub use snap::snapped_to_f32;
@@ -73,6 +79,37 @@ pub enum FabricateError {
         /// What would do.
         remedy: String,
     },
+    /// A solid cannot keep the chord error with so few triangles.
+    #[error(
+        "the solid has {found} triangles at least within a chord error of {chord_mm} mm; at most {most} are \
+         allowed; {remedy}"
+    )]
+    TooManyTriangles {
+        /// The fewest that were found.
+        found: usize,
+        /// How many are allowed.
+        most: usize,
+        /// The chord error that was asked for.
+        chord_mm: f64,
+        /// What would do.
+        remedy: String,
+    },
+    /// The part does not fit the printer.
+    #[error(
+        "the part is {:.2} x {:.2} x {:.2} mm and does not fit a bed of {}, not even turned by {turn_deg:.1} \
+         degrees to {:.2} x {:.2} mm; make it smaller, or give a larger bed",
+        part_mm[0], part_mm[1], part_mm[2], room(bed), turned_mm[0], turned_mm[1]
+    )]
+    Bed {
+        /// Width, depth and height as it is.
+        part_mm: [f64; 3],
+        /// The turn that comes nearest to fitting.
+        turn_deg: f64,
+        /// Width and depth when it is turned.
+        turned_mm: [f64; 2],
+        /// The bed.
+        bed: Bed,
+    },
     /// The region's extent does not fit the grid of 32-bit floats.
     #[error(transparent)]
     Grid(#[from] GridError),
@@ -108,4 +145,9 @@ pub enum FabricateError {
         /// What is wrong with the triangles.
         found: &'static str,
     },
+}
+
+fn room(bed: &Bed) -> String {
+    let height = bed.height_mm.map_or_else(String::new, |height| format!(" x {height}"));
+    format!("{} x {}{height} mm", bed.width_mm, bed.depth_mm)
 }

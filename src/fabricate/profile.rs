@@ -42,9 +42,7 @@ impl Profile {
     pub fn chamfered(self, chamfer_mm: f64) -> Result<Self, FabricateError> {
         match chamfer_mm >= MIN_CHAMFER_MM && chamfer_mm < 0.5 * self.thickness_mm {
             true => Ok(Self { chamfer_mm, ..self }),
-            false => {
-                Err(FabricateError::Chamfer { found_mm: chamfer_mm, thickness_mm: self.thickness_mm })
-            }
+            false => Err(FabricateError::Chamfer { found_mm: chamfer_mm, thickness_mm: self.thickness_mm }),
         }
     }
 

@@ -8,11 +8,12 @@ use serde::Serialize;
 use super::bridging::{self, BridgesReport};
 use super::error::JobError;
 use super::output::{Format, Output, Pending, Target, persist};
+use super::print::{self, PrintOptions, check_mesh};
 use super::report::{InputReport, StageTime};
 use super::stage::{Clock, Stage};
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
 use crate::export::{self, SvgOptions};
-use crate::fabricate::{self, Bridge, Counts};
+use crate::fabricate::{Bridge, Counts};
 use crate::planar::{GridPoint, Region, Tolerances};
 use crate::topology::{Goal, Wanted};
 use crate::verify::{self, Expected, MeshReport, Mismatch, SvgReport};
@@ -59,7 +60,7 @@ pub struct ExtrudeBridges {
 }
 
 /// Extrudes the drawing in `file` to a solid `thickness_mm` high, with `bridges` laid before, and writes each output,
-/// verified: the solid as STL, the outline that it has as SVG on the drawing's own page, and a picture of it with its
+/// verified: the solid as STL, 3MF or OBJ with the walls of `print`, the outline that it has as SVG on the drawing's own page, and a picture of it with its
 /// bridges.
 ///
 /// # Errors
@@ -68,12 +69,14 @@ pub struct ExtrudeBridges {
 pub fn extrude(
     file: &Path,
     thickness_mm: f64,
+    print: &PrintOptions,
     tolerances: &Tolerances,
     bridges: Option<ExtrudeBridges>,
     outputs: &[Output],
     progress: &mut dyn FnMut(Stage),
 ) -> Result<ExtrudeReport, JobError> {
     Output::check(outputs.iter().map(Output::target), &[file])?;
+    print.profile(thickness_mm)?;
     let mut clock = Clock::new(progress);
     let options = ReadOptions {
         chord_mm: tolerances.chord_mm() * READ_SHARE,
@@ -93,15 +96,25 @@ pub fn extrude(
         holes: Some(region.holes().into()),
         ..Expected::default()
     };
-    let (mut solid, mut drawn) = (None, None);
+    let (mut raised, mut solid, mut drawn) = (None, None, None);
     let mut pending = Vec::with_capacity(outputs.len());
     for output in outputs {
         let target = output.target();
         let item = match output.format() {
-            Format::Stl => {
-                let bytes = clock.time(Stage::Stl, || stl(&region, thickness_mm))?;
+            format @ (Format::Stl | Format::Threemf | Format::Obj) => {
+                let bytes = clock.time(Stage::Stl, || {
+                    let solid = match &raised {
+                        Some(solid) => solid,
+                        None => {
+                            let made =
+                                print.solid(&region, thickness_mm, tolerances.chord_mm(), &mut notes)?;
+                            raised.insert(made)
+                        }
+                    };
+                    print::mesh(format, solid, &print.document(file, None, Counts::of(&region)))
+                })?;
                 let item = Pending::new(target, bytes)?;
-                solid = Some(clock.time(Stage::Verify, || check_stl(target, &item, &expected))?);
+                solid = Some(clock.time(Stage::Verify, || check_mesh(output, &item, &expected))?);
                 item
             }
             Format::Svg => {
@@ -138,11 +151,6 @@ pub fn extrude(
 
 fn generator() -> String {
     format!("Openwork {}", env!("CARGO_PKG_VERSION"))
-}
-
-fn stl(region: &Region, thickness_mm: f64) -> Result<Vec<u8>, JobError> {
-    let solid = fabricate::extrude(region, thickness_mm)?;
-    Ok(export::stl(&solid, &generator())?)
 }
 
 /// The outline on the page of `drawing`, which grows where ink lies outside of it.
@@ -186,19 +194,6 @@ fn check_svg(
     let bytes = pending.read_again()?;
     let report = verify::read_svg(&bytes, chord_mm / 4.0)
         .map_err(|error| JobError::Unjudged { file: name(target), error })?;
-    report.check(expected).map_err(|mismatch| mismatched(target, mismatch))?;
-    Ok(report)
-}
-
-/// Reads a written STL again and holds it against the plan.
-pub(super) fn check_stl(
-    target: &Target,
-    pending: &Pending,
-    expected: &Expected,
-) -> Result<MeshReport, JobError> {
-    let bytes = pending.read_again()?;
-    let report =
-        verify::read_stl(&bytes).map_err(|error| JobError::Unjudged { file: name(target), error })?;
     report.check(expected).map_err(|mismatch| mismatched(target, mismatch))?;
     Ok(report)
 }

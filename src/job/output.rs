@@ -13,6 +13,10 @@ pub enum Format {
     Svg,
     /// A binary STL solid in millimetres.
     Stl,
+    /// A 3MF package of the solid, with names, colours and notes.
+    Threemf,
+    /// An OBJ of the solid in millimetres.
+    Obj,
     /// A picture to look at.
     Png,
 }
@@ -23,8 +27,15 @@ impl Format {
         match self {
             Self::Svg => "svg",
             Self::Stl => "stl",
+            Self::Threemf => "3mf",
+            Self::Obj => "obj",
             Self::Png => "png",
         }
+    }
+
+    /// Whether such files hold a solid.
+    pub fn is_solid(self) -> bool {
+        matches!(self, Self::Stl | Self::Threemf | Self::Obj)
     }
 }
 
@@ -73,7 +84,7 @@ pub struct Output {
 }
 
 impl Output {
-    /// A file whose extension says the format: `.svg`, `.stl` or `.png`.
+    /// A file whose extension says the format: `.svg`, `.stl`, `.3mf`, `.obj` or `.png`.
     ///
     /// # Errors
     /// [`JobError::Option`] for another extension.
@@ -83,12 +94,14 @@ impl Output {
         let format = match extension.as_str() {
             "svg" => Format::Svg,
             "stl" => Format::Stl,
+            "3mf" => Format::Threemf,
+            "obj" => Format::Obj,
             "png" => Format::Png,
             _ => {
                 return Err(JobError::Option {
                     option: "--output",
                     found: format!("{} does not say a format", path.display()),
-                    wanted: "end the name in .svg, .stl or .png (or use - for an SVG on standard output)"
+                    wanted: "end the name in .svg, .stl, .3mf, .obj or .png (or use - for an SVG on standard output)"
                         .to_owned(),
                 });
             }

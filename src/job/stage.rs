@@ -21,7 +21,7 @@ pub enum Stage {
     Bridge,
     /// The SVG file.
     Svg,
-    /// The solid and the STL file.
+    /// The solid and its STL, 3MF and OBJ files.
     Stl,
     /// The picture.
     Png,

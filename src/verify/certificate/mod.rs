@@ -29,7 +29,12 @@ pub enum Counted<'a> {
     /// A drawing.
     Svg(&'a SvgReport),
     /// A solid: a shell for each component, a tunnel for each hole.
-    Stl(&'a MeshReport),
+    Mesh {
+        /// `stl`, `3mf` or `obj`.
+        format: &'a str,
+        /// What was found in it.
+        report: &'a MeshReport,
+    },
 }
 
 /// Replays the certificate of `report`, the JSON of a job, for a file with these bytes in which so much was
