@@ -310,8 +310,10 @@ fn libraries_stay_behind_their_adapters() {
     let mut faults = Vec::new();
     for file in rust_files(&root().join("src")) {
         let name = name(&file);
-        for token in tokens(&read(&file)) {
-            let home = LIBRARIES.iter().find(|(library, _)| *library == token.text);
+        for pair in tokens(&read(&file)).windows(2) {
+            // A library is named at the beginning of a path; `zip` alone is what iterators do.
+            let [token, next] = pair else { unreachable!("windows of two") };
+            let home = LIBRARIES.iter().find(|(library, _)| *library == token.text && next.text == "::");
             let is_home = |place: &&str| name == **place || name.starts_with(&format!("{place}/"));
             if home.is_some_and(|(_, places)| !places.iter().any(is_home)) {
                 faults.push(format!("{name}:{}: {} belongs behind its adapter", token.line, token.text));

@@ -112,7 +112,7 @@ mod tests {
         assert!(found > 100 && found < 1000, "{found}");
         let text = error.to_string();
         let chord: f64 =
-            text.split("a chord error of ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+            text.split("a chord error of ").last().unwrap().split(' ').next().unwrap().parse().unwrap();
         assert!(raise_within(&disc(2000), &profile, chord, Some(100)).is_ok(), "{text}");
         let none = raise_within(&disc(2000), &profile, 0.05, Some(7)).unwrap_err().to_string();
         assert!(none.contains("no chord error does"), "{none}");
