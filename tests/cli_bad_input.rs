@@ -217,6 +217,28 @@ fn an_output_that_cannot_be_a_file() {
 }
 
 #[test]
+fn solids_that_no_printer_makes() {
+    let room = Room::with(&[]);
+    room.draw("bars.svg", "<path d='M10 10H110V14H10Z M10 14H14V30H10Z'/>");
+    let refuses = |options: &str, code: i32, words: &[&str]| {
+        room.refuses(&format!("extrude bars.svg --thickness 3mm {options} -o out.3mf"), code, words);
+    };
+    refuses("--chamfer 1.5mm", 2, &["the chamfer is 1.5 mm", "less than half of the thickness of 3 mm"]);
+    refuses("--chamfer -1mm", 2, &["the chamfer is -1 mm"]);
+    refuses("--taper 60", 2, &["the taper is 60 degrees", "less than 45"]);
+    refuses("--taper 40", 3, &["too narrow for walls that go in by 2.517 mm", "a taper of 33.", "does"]);
+    refuses("--max-triangles 3", 2, &["at most 3 are allowed", "no chord error does"]);
+    refuses(
+        "--bed 50x50mm",
+        2,
+        &["100.00 x 20.00 x 3.00 mm", "does not fit a bed of 50 x 50 mm", "larger bed"],
+    );
+    refuses("--bed 220x220x2mm", 2, &["does not fit a bed of 220 x 220 x 2 mm"]);
+    refuses("--bed 220", 2, &["--bed", "give a bed as 220x220mm"]);
+    refuses("--place", 2, &["--bed"]);
+}
+
+#[test]
 fn an_output_that_is_named_twice_or_is_an_input() {
     let room = Room::with(&["vine.svg"]);
     room.draw("curve.svg", "<path d='M0 30 H120' fill='none' stroke='black'/>");

@@ -2,7 +2,8 @@
 //!
 //! Two facets of a sound surface share an edge, a corner, or nothing. Whether they share more is decided by
 //! exact predicates: an edge of one facet against the other facet, both closed sets, leaving out the corners
-//! that both have. Pairs are found by their bounding boxes. Excluded: facets without area, which are a fault
+//! that both have. Pairs are found by their bounding boxes; most of them lie on two sides of a plane or an edge,
+//! which is tried first. Excluded: facets without area, which are a fault
 //! of their own, and pairs with the same three corners, which are duplicates.
 
 use glam::{DVec2, DVec3};
@@ -45,6 +46,9 @@ pub(super) fn crossings(at: &[DVec3], facets: &[[usize; 3]]) -> Vec<(usize, DVec
 fn meet(at: &[DVec3], one: [usize; 3], other: [usize; 3]) -> bool {
     let shared = one.iter().filter(|v| other.contains(v)).count();
     let (s, t) = (one.map(|v| at[v]), other.map(|v| at[v]));
+    if is_beside(at, one, other) || is_beside(at, other, one) {
+        return false;
+    }
     match shared {
         0 => (0..3).any(|i| pierces(s[i], s[(i + 1) % 3], t) || pierces(t[i], t[(i + 1) % 3], s)),
         // What they share beyond the common corner ends on an edge that does not have it.
@@ -56,6 +60,24 @@ fn meet(at: &[DVec3], one: [usize; 3], other: [usize; 3]) -> bool {
         2 => folded(at, one, other),
         _ => false,
     }
+}
+
+/// Whether the corners that only `other` has lie all on one side of the plane of `facet`, or, where both are level and
+/// equally high, all beyond an edge of it. Then the two have no more in common than their corners do. This settles
+/// nearly all pairs.
+fn is_beside(at: &[DVec3], facet: [usize; 3], other: [usize; 3]) -> bool {
+    let t = facet.map(|v| at[v]);
+    let mut own = other.into_iter().filter(|v| !facet.contains(v)).map(|v| at[v]);
+    if facet.iter().chain(&other).any(|&v| at[v].z != t[0].z) {
+        let Some(first) = own.next().map(|p| side(t, p)) else { return false };
+        return first != 0.0 && own.all(|p| side(t, p) * first.signum() > 0.0);
+    }
+    (0..3).any(|i| {
+        let [a, b, c] = [0, 1, 2].map(|k| t[(i + k) % 3].truncate());
+        // From a corner inside, the other one would reach across.
+        let inside = turn(a, b, c).signum();
+        !other.contains(&facet[(i + 2) % 3]) && own.clone().all(|p| turn(a, b, p.truncate()) * inside < 0.0)
+    })
 }
 
 /// The two corners besides the one that `is_shared`.
@@ -119,6 +141,18 @@ fn cross_flat(p: DVec2, q: DVec2, a: DVec2, b: DVec2) -> bool {
 
 /// The side of the plane of `t` on which `p` lies; only the sign counts, and it is exact.
 fn side(t: [DVec3; 3], p: DVec3) -> f64 {
+    if t.iter().all(|v| v.z == t[0].z) {
+        // Caps are level and walls upright: the predicate would go to its last resort for each point in their plane.
+        let [a, b, c] = t.map(DVec3::truncate);
+        let up = turn(a, b, c);
+        return if up == 0.0 { 0.0 } else { up.signum() * (t[0].z - p.z) };
+    }
+    for i in 0..3 {
+        let (a, b, c) = (t[i], t[(i + 1) % 3], t[(i + 2) % 3]);
+        if a.truncate() == b.truncate() {
+            return turn(a.truncate(), c.truncate(), p.truncate()) * (a.z - b.z).signum();
+        }
+    }
     let coord = |v: DVec3| Coord3D { x: v.x, y: v.y, z: v.z };
     orient3d(coord(t[0]), coord(t[1]), coord(t[2]), coord(p))
 }
@@ -195,6 +229,7 @@ mod tests {
         assert!(with([[0., 0., 0.], [3., 3., 0.], [3., 2., 0.]]), "over it from a corner, in one plane");
         assert!(with([[0., 0., 0.], [2., 2., 0.], [2., 2., 3.]]), "an edge from a corner lies in it");
         assert!(with([[0., 0., 0.], [1., 1., 1.], [3., 1., -1.]]), "through it from a corner");
+        assert!(with([[0., 0., 0.], [5., 3., 0.], [3., 5., 0.]]), "from a corner across it, in one plane");
         assert!(with([[-1., -1., 0.], [9., -1., 0.], [-1., 9., 0.]]), "around it, in one plane");
     }
 
