@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 
 use super::laser::LaserArgs;
+use super::print::PrintArgs;
 use super::values;
 use crate::domain::{CurveSpec, RectSize};
 use crate::job::{KeptRange, SlicingChoice, StitchMethod};
@@ -20,10 +21,10 @@ pub struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
-    /// Synthesize a band along a line, a circle or any path, and write it as SVG, DXF, STL or PNG
+    /// Synthesize a band along a line, a circle or any path, and write it as SVG, DXF, STL, 3MF, OBJ or PNG
     #[command(after_help = BAND_HELP)]
     Band(Box<BandArguments>),
-    /// Synthesize a rectangle, in both directions, and write it as SVG, DXF, STL or PNG
+    /// Synthesize a rectangle, in both directions, and write it as SVG, DXF, STL, 3MF, OBJ or PNG
     #[command(after_help = RECT_HELP)]
     Rect(Box<RectArguments>),
     /// Show how an exemplar is understood: critical points, cuts, pieces, portals, descriptors
@@ -32,7 +33,7 @@ pub(super) enum Command {
     /// Extrude any SVG, as it is, to a verified solid, or turn it into cut lines
     #[command(after_help = EXTRUDE_HELP)]
     Extrude(ExtrudeArguments),
-    /// Count components and holes (SVG, DXF) or shells and genus (STL) of a file, and check them
+    /// Count components and holes (SVG, DXF) or shells and genus (STL, 3MF, OBJ) of a file, and check them
     #[command(after_help = VERIFY_HELP)]
     Verify(VerifyArguments),
 }
@@ -96,6 +97,8 @@ Examples:
   openwork extrude sign.svg --thickness 3mm -o sign.stl
   For a laser: arcs and lines, inner contours first, with the width of the beam taken into account:
     openwork extrude sign.svg --kerf 0.15mm -o sign.dxf
+  With bevelled edges, for a printer of 220 mm:
+    openwork extrude sign.svg --thickness 3mm --chamfer 0.5mm --bed 220x220mm --place -o sign.3mf
   A stencil of one's own drawing in one piece, from which nothing falls out, and a picture of where the bridges are
   (struts orange, slits green):
     openwork extrude letters.svg --bridge 1mm --components 1 --holes 0 -o stencil.svg -o stencil.png
@@ -221,10 +224,12 @@ pub(super) struct PatternArguments {
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(super) bridge: Option<f64>,
     #[command(flatten)]
+    pub(super) print: PrintArgs,
+    #[command(flatten)]
     pub(super) tolerances: ToleranceArguments,
     #[command(flatten)]
     pub(super) laser: LaserArgs,
-    /// A file to write: .svg, .dxf, .stl or .png; may be repeated; - is SVG on standard output
+    /// A file to write: .svg, .dxf, .stl, .3mf, .obj or .png; may be repeated; - is SVG on standard output
     #[arg(short, long, value_name = "FILE", required = true)]
     pub(super) output: Vec<PathBuf>,
     /// Write a report of what was asked for, made and measured (JSON; - for standard output)
@@ -297,8 +302,11 @@ pub(super) struct ExtrudeArguments {
     #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "0.01mm", allow_hyphen_values = true)]
     pub(super) chord: f64,
     #[command(flatten)]
+    pub(super) print: PrintArgs,
+    #[command(flatten)]
     pub(super) laser: LaserArgs,
-    /// A file to write: .stl, .svg (the outline, with its bridges), .dxf or .png; may be repeated; - is STL on standard output
+    /// A file to write: .stl, .3mf, .obj, .svg (the outline, with its bridges), .dxf or .png; may be repeated; - is STL on
+    /// standard output
     #[arg(short, long, value_name = "FILE", required = true)]
     pub(super) output: Vec<PathBuf>,
     /// Print what was made and found as JSON on standard output, each bridge with its position
@@ -311,7 +319,7 @@ pub(super) struct ExtrudeArguments {
 
 #[derive(Debug, Args)]
 pub(super) struct VerifyArguments {
-    /// The file (.svg, .dxf or .stl)
+    /// The file (.svg, .dxf, .stl, .3mf or .obj)
     pub(super) file: PathBuf,
     /// Read an .svg as lines to be cut, whatever paints them: material is what an odd number of them is around. Files that
     /// say so themselves, as those of --cut, are always read so
@@ -326,10 +334,10 @@ pub(super) struct VerifyArguments {
     /// It must be a tile: opposite sides match, so that copies join (SVG). Tells what the tiling has
     #[arg(long)]
     pub(super) tiles: bool,
-    /// Components (SVG) or shells (STL) that it must have: a number, a range with both ends as 1..2, or any
+    /// Components (SVG) or shells (solids) that it must have: a number, a range with both ends as 1..2, or any
     #[arg(long, value_name = "N", value_parser = values::wanted, default_value = "any", hide_default_value = true, allow_negative_numbers = true)]
     pub(super) components: values::Count,
-    /// Holes (SVG) or total genus (STL) that it must have: a number, a range or any
+    /// Holes (SVG) or total genus (solids) that it must have: a number, a range or any
     #[arg(long, value_name = "M", value_parser = values::wanted, default_value = "any", hide_default_value = true, allow_negative_numbers = true)]
     pub(super) holes: values::Count,
     #[command(flatten)]

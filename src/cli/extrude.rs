@@ -20,10 +20,11 @@ pub(super) fn run(arguments: &ExtrudeArguments) -> Result<ExitCode, CliError> {
         holes: arguments.holes.and_then(|count| count.0),
     });
     let progress = Progress::new(arguments.quiet, outputs.iter().map(Output::target));
-    let laser = arguments.laser.options();
+    let (print, laser) = (arguments.print.options(), arguments.laser.options());
     let made = extrude(
         &arguments.file,
         arguments.thickness,
+        &print,
         &tolerances,
         bridges,
         &laser,

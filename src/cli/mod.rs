@@ -15,6 +15,7 @@ macro_rules! say {
 mod args;
 mod extrude;
 mod laser;
+mod print;
 mod progress;
 mod rect;
 mod run;

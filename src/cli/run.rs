@@ -40,7 +40,7 @@ pub(super) enum CliError {
     Uncertified { file: String, error: CertificateError },
     #[error("{file}: {report}")]
     Refuted { file: String, report: Box<CertificateReport> },
-    #[error("{file}: the name does not say what it is; verify reads .svg, .dxf and .stl")]
+    #[error("{file}: the name does not say what it is; verify reads .svg, .dxf, .stl, .3mf and .obj")]
     UnknownKind { file: String },
     #[error(transparent)]
     Analysis(#[from] AnalysisError),
@@ -209,6 +209,7 @@ pub(super) fn with_pattern(builder: BandBuilder, a: &PatternArguments) -> BandBu
         .memory_limit(a.memory_limit)
         .laser(a.laser.options())
         .thickness_mm(a.thickness)
+        .print(a.print.options())
         .chord_mm(a.tolerances.chord)
         .min_feature_mm(a.tolerances.min_feature.unwrap_or(0.0))
         .min_gap_mm(a.tolerances.min_gap.unwrap_or(0.0));
@@ -282,8 +283,8 @@ fn run_analyze(arguments: &AnalyzeArguments) -> Result<ExitCode, CliError> {
         arguments.output.iter().map(|path| output(path, Format::Svg)).collect::<Result<_, _>>()?;
     Output::check(outputs.iter().map(Output::target), &[&arguments.exemplar])?;
     refuse_json_beside(arguments.json, &outputs)?;
-    let is_other = |format| matches!(format, Format::Stl | Format::Dxf);
-    if let Some(other) = outputs.iter().find(|o| is_other(o.format())) {
+    let is_part = |format: Format| format.is_solid() || format == Format::Dxf;
+    if let Some(other) = outputs.iter().find(|o| is_part(o.format())) {
         return Err(CliError::Job(JobError::Option {
             option: "--output",
             found: format!("{} is a part to be made", other.target()),
@@ -306,7 +307,9 @@ fn run_analyze(arguments: &AnalyzeArguments) -> Result<ExitCode, CliError> {
     let analysis = Analysis::keeping(&exemplar, rule, &arguments.keep, &tolerances, &CostWeights::default())?;
     write_all(&outputs, |format| match format {
         Format::Png => analysis.overlay_png(OVERLAY_PIXELS).map_err(JobError::from),
-        Format::Svg | Format::Dxf | Format::Stl => Ok(analysis.overlay_svg().into_bytes()),
+        Format::Svg | Format::Dxf | Format::Stl | Format::Threemf | Format::Obj => {
+            Ok(analysis.overlay_svg().into_bytes())
+        }
     })?;
     if arguments.json {
         print_json(&analysis)?;

@@ -57,13 +57,21 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<ExitCode, CliError> {
             tiling.map_err(|fault| CliError::Untiled { file: file.clone(), fault })?;
             report.check(&expected)
         }
-        "stl" if expected.min_feature_mm > 0.0 || expected.min_gap_mm > 0.0 => {
+        "stl" | "3mf" | "obj" if expected.min_feature_mm > 0.0 || expected.min_gap_mm > 0.0 => {
             return Err(only_drawings("--min-feature", "widths are measured", "--min-feature and --min-gap"));
         }
-        "stl" if arguments.tiles => return Err(only_drawings("--tiles", "tiles are joined", "--tiles")),
-        "stl" => {
-            let report = verify::read_stl(&bytes).map_err(unjudged)?;
-            print_verified(arguments, &report, None, replayed(Counted::Stl(&report))?)?;
+        "stl" | "3mf" | "obj" if arguments.tiles => {
+            return Err(only_drawings("--tiles", "tiles are joined", "--tiles"));
+        }
+        "stl" | "3mf" | "obj" => {
+            let read = match extension.as_str() {
+                "3mf" => verify::read_threemf(&bytes),
+                "obj" => verify::read_obj(&bytes),
+                _ => verify::read_stl(&bytes),
+            };
+            let report = read.map_err(unjudged)?;
+            let counted = Counted::Mesh { format: &extension, report: &report };
+            print_verified(arguments, &report, None, replayed(counted)?)?;
             report.check(&expected)
         }
         _ => return Err(CliError::UnknownKind { file }),

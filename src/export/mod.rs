@@ -1,11 +1,11 @@
-//! Files: SVG, DXF, STL and PNG writers, and outputs that appear whole or not at all.
+//! Files: SVG, DXF, STL, 3MF, OBJ and PNG writers, and outputs that appear whole or not at all.
 //!
 //! A writer turns a region or a solid into bytes; [`stage`] and [`persist_all`] turn bytes into files. The
 //! two are apart so that what was written can be read again and verified under its temporary name, before
 //! anything exists under the name that was asked for.
 //!
 //! What this room promises to the next: the curves of an SVG or DXF lie within the chord tolerance of the region
-//! and have its components and holes; an STL has the solid's coordinates unrounded; the same input gives the
+//! and have its components and holes; STL, 3MF and OBJ have the solid's coordinates unrounded; the same input gives the
 //! same bytes. Excluded: standard output, and how shapes came to be.
 
 mod arcs;
@@ -14,6 +14,8 @@ mod curves;
 mod cut_svg;
 mod cutlines;
 mod dxf;
+mod mesh;
+mod obj;
 mod order;
 mod outline;
 mod outlines;
@@ -23,16 +25,20 @@ mod staged;
 mod stl;
 mod svg;
 mod text;
+mod threemf;
 mod view;
 
 pub use cut_svg::cut_svg;
 pub use cutlines::{CutLines, CutNumbers, Layer};
 pub use dxf::{DxfVersion, dxf};
+pub use mesh::MeshDocument;
+pub use obj::obj;
 pub use outlines::Curves;
 pub use png::{DEFAULT_PIXELS, Marks, png};
 pub use staged::{Staged, check_destination, persist_all, remove_staged, stage};
 pub use stl::stl;
 pub use svg::{SvgDocument, SvgOptions, svg};
+pub use threemf::threemf;
 pub use view::{DEFAULT_COLOUR, Painted, View, view_png};
 
 use std::io;

@@ -11,18 +11,20 @@ use super::choice::Choice;
 use super::cut::{Cut, read_exemplar, slice};
 use super::describe::describe;
 use super::error::JobError;
-use super::extrude::{check_stl, file_name, name};
+use super::extrude::{file_name, name};
 use super::laser::Cutting;
 use super::output::{Format, Output, Pending, Target, persist};
 use super::part::{Part, PartError};
+use super::picture::Pictured;
 use super::plan::Plan;
+use super::print::{self, check_mesh};
 use super::report::{BandReport, InputReport};
 use super::stage::{Clock, Stage};
 use super::ways::{Runs, ways, weighed, weighed_note};
 use crate::domain::{BandMap, CurveSpec, PlanarCurve};
 use crate::exemplar::{Limits, read_path};
-use crate::export::{self, Marks, SvgDocument, SvgOptions};
-use crate::fabricate::{self, Counts};
+use crate::export::{self, MeshDocument, SvgDocument, SvgOptions};
+use crate::fabricate::{self, Counts, Solid};
 use crate::fit::{FitOptions, Outline, Prepared, Sides, StitchMethod};
 use crate::planar::Region;
 use crate::topology::Topology;
@@ -279,7 +281,7 @@ impl Band {
             true => Some(clock.time(Stage::CutLines, || self.cutting())?),
             false => None,
         };
-        let mut pending = Vec::new();
+        let (mut pending, mut raised) = (Vec::new(), None);
         let mut digests = Vec::new();
         let mut digest = |output: &Output, bytes: &[u8]| {
             let file = name(output.target()).display().to_string();
@@ -308,11 +310,14 @@ impl Band {
                     }
                     item
                 }
-                Format::Stl => {
-                    let bytes = clock.time(Stage::Stl, || self.stl())?;
+                format @ (Format::Stl | Format::Threemf | Format::Obj) => {
+                    let bytes = clock.time(Stage::Stl, || {
+                        let solid = print::raised(&mut raised, || self.solid(&mut report.made.notes))?;
+                        print::mesh(format, solid, &self.document())
+                    })?;
                     digest(output, &bytes);
                     let item = Pending::new(output.target(), bytes)?;
-                    let solid = clock.time(Stage::Verify, || check_stl(output.target(), &item, &expected))?;
+                    let solid = clock.time(Stage::Verify, || check_mesh(output, &item, &expected))?;
                     report.made.triangles = Some(solid.triangles);
                     report.made.shells = Some(solid.shells.len());
                     report.made.genus = Some(solid.genus);
@@ -321,9 +326,16 @@ impl Band {
                 }
                 Format::Png => {
                     let bridges = self.report.bridges.as_ref().map_or(&[][..], |b| &b.bridges);
-                    let marks = Marks { bridges, ..Marks::default() };
+                    let narrow_mm = Vec::new();
+                    let part = Pictured {
+                        region: &self.part.region,
+                        bridges,
+                        seams_mm: &self.part.seams_mm,
+                        narrow_mm: &narrow_mm,
+                    };
                     let picture = clock.time(Stage::Png, || {
-                        export::png(&self.part.region, &marks, export::DEFAULT_PIXELS)
+                        let solid = || print::raised(&mut raised, || self.solid(&mut report.made.notes));
+                        self.job.options.picture.png(&part, solid)
                     })?;
                     digest(output, &picture);
                     Pending::new(output.target(), picture)?
@@ -399,8 +411,24 @@ impl Band {
     /// # Errors
     /// [`JobError`] when the solid cannot be made.
     pub fn stl(&self) -> Result<Vec<u8>, JobError> {
-        let solid = fabricate::extrude(&self.part.region, self.job.options.thickness_mm)?;
-        Ok(export::stl(&solid, self.report.generator)?)
+        print::mesh(Format::Stl, &self.solid(&mut Vec::new())?, &self.document())
+    }
+
+    /// The part as a solid; what the user may want to know is added to `notes`.
+    fn solid(&self, notes: &mut Vec<String>) -> Result<Solid, JobError> {
+        let options = &self.job.options;
+        let chord_mm = self.job.tolerances.chord_mm();
+        options.print.solid(&self.part.region, options.thickness_mm, chord_mm, notes)
+    }
+
+    /// What files say of the solid.
+    fn document(&self) -> MeshDocument {
+        let options = &self.job.options;
+        let seed = match options.choice {
+            Choice::Drawn { seed, .. } => Some(seed),
+            _ => options.seed,
+        };
+        options.print.document(&options.exemplar, seed, self.counts)
     }
 
     /// What was found in the drawing, which is kept for [`Band::deliver`].

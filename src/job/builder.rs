@@ -8,6 +8,7 @@ use super::error::JobError;
 use super::laser::LaserOptions;
 use super::output::{Output, Target};
 use super::plan::DEFAULT_MEMORY_LIMIT;
+use super::print::PrintOptions;
 use super::stage::Stage;
 use crate::domain::CurveSpec;
 use crate::fit::StitchMethod;
@@ -43,6 +44,7 @@ pub struct BandBuilder {
     pub(super) beta: f64,
     pub(super) weights: CostWeights,
     pub(super) thickness_mm: f64,
+    pub(super) print: PrintOptions,
     pub(super) round_mm: Option<f64>,
     pub(super) stitch: StitchMethod,
     pub(super) bridge_mm: Option<f64>,
@@ -73,6 +75,7 @@ impl BandBuilder {
             beta: 0.0,
             weights: CostWeights::default(),
             thickness_mm: DEFAULT_THICKNESS_MM,
+            print: PrintOptions::default(),
             round_mm: None,
             stitch: StitchMethod::default(),
             bridge_mm: None,
@@ -159,6 +162,12 @@ impl BandBuilder {
         self
     }
 
+    /// How the solid is made, beyond its thickness.
+    pub fn print(mut self, print: PrintOptions) -> Self {
+        self.print = print;
+        self
+    }
+
     /// The narrowest ink that the machine makes; 0 is not checked.
     pub fn min_feature_mm(mut self, min_feature_mm: f64) -> Self {
         self.min_feature_mm = min_feature_mm;
@@ -236,6 +245,7 @@ impl BandBuilder {
             in_range("--bridge", width, 0.01, 100.0)?;
         }
         in_range("--thickness", self.thickness_mm, 0.001, 10_000.0)?;
+        self.print.profile(self.thickness_mm)?;
         if !(0.0..=1e6).contains(&self.beta) {
             return Err(out_of_range("--variety", self.beta, "it must be from 0 to 1000000"));
         }

@@ -161,7 +161,7 @@ pub struct ResultCounts {
 pub struct FileDigest {
     /// The name as it was given.
     pub file: String,
-    /// `svg`, `stl` or `png`.
+    /// `svg`, `stl`, `3mf`, `obj` or `png`.
     pub format: &'static str,
     /// SHA-256 of its bytes, in hexadecimal.
     pub sha256: String,

@@ -143,7 +143,14 @@ impl JobError {
             Self::Slicing(_) => 2,
             Self::Bridge(BridgeError::Width { .. }) => 2,
             Self::Refused(_) | Self::SearchTooLarge { .. } | Self::Bridge(_) | Self::Kerf(_) => 3,
-            Self::Fabricate(FabricateError::Thickness { .. }) => 2,
+            Self::Fabricate(
+                FabricateError::Thickness { .. }
+                | FabricateError::Chamfer { .. }
+                | FabricateError::Taper { .. }
+                | FabricateError::TooManyTriangles { .. }
+                | FabricateError::Bed { .. },
+            ) => 2,
+            Self::Fabricate(FabricateError::Inset { .. }) => 3,
             Self::Outline { .. }
             | Self::Tiling(_)
             | Self::Fabricate(_)

@@ -9,14 +9,15 @@ use super::bridging::{self, BridgesReport};
 use super::error::JobError;
 use super::laser::{Cutting, LaserOptions, LaserReport};
 use super::output::{Format, Output, Pending, Target, persist};
+use super::print::{self, PrintOptions, check_mesh};
 use super::report::{InputReport, StageTime};
 use super::stage::{Clock, Stage};
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
-use crate::export::{self, Marks, SvgOptions};
-use crate::fabricate::{self, Bridge, Counts};
+use crate::export::{self, SvgOptions};
+use crate::fabricate::{Bridge, Counts};
 use crate::planar::{GridPoint, Region, Tolerances};
 use crate::topology::{Goal, Wanted};
-use crate::verify::{self, Expected, Mismatch, StlReport, SvgReport};
+use crate::verify::{self, Expected, MeshReport, Mismatch, SvgReport};
 
 /// The part of the chord error that is for flattening the drawing; the rest is for fitting curves to it again.
 const READ_SHARE: f64 = 0.5;
@@ -37,7 +38,7 @@ pub struct ExtrudeReport {
     /// The bridges, when some were asked for; the counts are with them.
     pub bridges: Option<BridgesReport>,
     /// What was found in the solid, if one was written.
-    pub solid: Option<StlReport>,
+    pub solid: Option<MeshReport>,
     /// What was found in the SVG, if one was written.
     pub drawing: Option<SvgReport>,
     /// The files of cut lines, if some were written.
@@ -62,8 +63,8 @@ pub struct ExtrudeBridges {
 }
 
 /// Extrudes the drawing in `file` to a solid `thickness_mm` high, with `bridges` laid before, and writes each output,
-/// verified: the solid as STL, the outline that it has as SVG on the drawing's own page, cut lines as `laser` says, and a
-/// picture of it with its bridges.
+/// verified: the solid as STL, 3MF or OBJ with the walls of `print`, the outline that it has as SVG on the drawing's own
+/// page, cut lines as `laser` says, and a picture of it with its bridges.
 ///
 /// # Errors
 /// [`JobError`] for a drawing that cannot be represented, a thickness out of range, and a file that cannot be
@@ -71,6 +72,7 @@ pub struct ExtrudeBridges {
 pub fn extrude(
     file: &Path,
     thickness_mm: f64,
+    print: &PrintOptions,
     tolerances: &Tolerances,
     bridges: Option<ExtrudeBridges>,
     laser: &LaserOptions,
@@ -79,6 +81,7 @@ pub fn extrude(
 ) -> Result<ExtrudeReport, JobError> {
     Output::check(outputs.iter().map(Output::target), &[file])?;
     laser.check(outputs)?;
+    print.profile(thickness_mm)?;
     let mut clock = Clock::new(progress);
     let options = ReadOptions {
         chord_mm: tolerances.chord_mm() * READ_SHARE,
@@ -108,7 +111,7 @@ pub fn extrude(
         }
         false => None,
     };
-    let (mut solid, mut drawn) = (None, None);
+    let (mut raised, mut solid, mut drawn) = (None, None, None);
     let mut pending = Vec::with_capacity(outputs.len());
     for output in outputs {
         let target = output.target();
@@ -118,10 +121,14 @@ pub fn extrude(
         }
         let item = match output.format() {
             Format::Dxf => unreachable!("a DXF has cut lines"),
-            Format::Stl => {
-                let bytes = clock.time(Stage::Stl, || stl(&region, thickness_mm))?;
+            format @ (Format::Stl | Format::Threemf | Format::Obj) => {
+                let bytes = clock.time(Stage::Stl, || {
+                    let make = || print.solid(&region, thickness_mm, tolerances.chord_mm(), &mut notes);
+                    let solid = print::raised(&mut raised, make)?;
+                    print::mesh(format, solid, &print.document(file, None, Counts::of(&region)))
+                })?;
                 let item = Pending::new(target, bytes)?;
-                solid = Some(clock.time(Stage::Verify, || check_stl(target, &item, &expected))?);
+                solid = Some(clock.time(Stage::Verify, || check_mesh(output, &item, &expected))?);
                 item
             }
             Format::Svg => {
@@ -160,11 +167,6 @@ pub fn extrude(
 
 fn generator() -> String {
     format!("Openwork {}", env!("CARGO_PKG_VERSION"))
-}
-
-fn stl(region: &Region, thickness_mm: f64) -> Result<Vec<u8>, JobError> {
-    let solid = fabricate::extrude(region, thickness_mm)?;
-    Ok(export::stl(&solid, &generator())?)
 }
 
 /// The outline on the page of `drawing`, which grows where ink lies outside of it.
@@ -208,19 +210,6 @@ fn check_svg(
     let bytes = pending.read_again()?;
     let report = verify::read_svg(&bytes, chord_mm / 4.0)
         .map_err(|error| JobError::Unjudged { file: name(target), error })?;
-    report.check(expected).map_err(|mismatch| mismatched(target, mismatch))?;
-    Ok(report)
-}
-
-/// Reads a written STL again and holds it against the plan.
-pub(super) fn check_stl(
-    target: &Target,
-    pending: &Pending,
-    expected: &Expected,
-) -> Result<StlReport, JobError> {
-    let bytes = pending.read_again()?;
-    let report =
-        verify::read_stl(&bytes).map_err(|error| JobError::Unjudged { file: name(target), error })?;
     report.check(expected).map_err(|mismatch| mismatched(target, mismatch))?;
     Ok(report)
 }

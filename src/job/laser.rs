@@ -214,7 +214,7 @@ impl Cutting {
                     export::cut_svg(&self.lines, &options)
                 })?
                 .into_bytes(),
-            Format::Dxf | Format::Stl => clock
+            _ => clock
                 .time(Stage::CutLines, || export::dxf(&self.lines, self.options.dxf_version))?
                 .into_bytes(),
         };

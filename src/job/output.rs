@@ -15,6 +15,10 @@ pub enum Format {
     Dxf,
     /// A binary STL solid in millimetres.
     Stl,
+    /// A 3MF package of the solid, with names, colours and notes.
+    Threemf,
+    /// An OBJ of the solid in millimetres.
+    Obj,
     /// A picture to look at.
     Png,
 }
@@ -26,8 +30,15 @@ impl Format {
             Self::Svg => "svg",
             Self::Dxf => "dxf",
             Self::Stl => "stl",
+            Self::Threemf => "3mf",
+            Self::Obj => "obj",
             Self::Png => "png",
         }
+    }
+
+    /// Whether such files hold a solid.
+    pub fn is_solid(self) -> bool {
+        matches!(self, Self::Stl | Self::Threemf | Self::Obj)
     }
 }
 
@@ -76,7 +87,7 @@ pub struct Output {
 }
 
 impl Output {
-    /// A file whose extension says the format: `.svg`, `.dxf`, `.stl` or `.png`.
+    /// A file whose extension says the format: `.svg`, `.dxf`, `.stl`, `.3mf`, `.obj` or `.png`.
     ///
     /// # Errors
     /// [`JobError::Option`] for another extension.
@@ -87,13 +98,15 @@ impl Output {
             "svg" => Format::Svg,
             "dxf" => Format::Dxf,
             "stl" => Format::Stl,
+            "3mf" => Format::Threemf,
+            "obj" => Format::Obj,
             "png" => Format::Png,
             _ => {
                 return Err(JobError::Option {
                     option: "--output",
                     found: format!("{} does not say a format", path.display()),
                     wanted:
-                        "end the name in .svg, .dxf, .stl or .png (or use - for an SVG on standard output)"
+                        "end the name in .svg, .dxf, .stl, .3mf, .obj or .png (or use - for an SVG on standard output)"
                             .to_owned(),
                 });
             }

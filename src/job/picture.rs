@@ -93,14 +93,14 @@ impl PictureOptions {
         Ok(())
     }
 
-    /// The picture of a part. Its solid is made only if it is looked at.
-    pub(super) fn png(
+    /// The picture of a part. Its solid is asked for only if it is looked at.
+    pub(super) fn png<'s>(
         &self,
         part: &Pictured<'_>,
-        solid: impl FnOnce() -> Result<Solid, JobError>,
+        solid: impl FnOnce() -> Result<&'s Solid, JobError>,
     ) -> Result<Vec<u8>, JobError> {
         if let Some(view) = self.view {
-            let painted = Painted { solid: &solid()?, colour: DEFAULT_COLOUR };
+            let painted = Painted { solid: solid()?, colour: DEFAULT_COLOUR };
             return Ok(export::view_png(&[painted], view, self.pixels)?);
         }
         let shows = |what: Show| self.show.contains(&what);

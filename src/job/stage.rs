@@ -23,7 +23,7 @@ pub enum Stage {
     Svg,
     /// Kerf, plate and the files of cut lines.
     CutLines,
-    /// The solid and the STL file.
+    /// The solid and its STL, 3MF and OBJ files.
     Stl,
     /// The picture.
     Png,

@@ -7,7 +7,7 @@ use thiserror::Error;
 use super::cutlines::{CutFault, CutReport};
 use super::endure::{endures_dilation, endures_erosion};
 use super::narrowest::Narrowest;
-use super::shells::{StlFault, StlReport};
+use super::shells::{MeshFault, MeshReport};
 use super::svg::SvgReport;
 use crate::planar::Region;
 
@@ -113,7 +113,7 @@ pub enum Mismatch {
         /// How many.
         count: usize,
         /// The first.
-        first: StlFault,
+        first: MeshFault,
     },
 }
 
@@ -174,7 +174,7 @@ fn planar(
     Ok(())
 }
 
-impl StlReport {
+impl MeshReport {
     /// Whether the solid is sound and as `expected`: as many shells as components, a total genus of as many
     /// as holes. Widths are not looked at; the SVG of the same outline tells them.
     ///

@@ -59,11 +59,11 @@ impl Replay<'_> {
                 }
                 (format, (report.components as i64, report.holes as i64))
             }
-            Counted::Stl(report) => {
+            Counted::Mesh { format, report } => {
                 if let Some(first) = report.faults.first() {
                     self.fault(CertificatePlace::File, format!("the solid is not sound: {first}"));
                 }
-                ("stl", (report.shells.len() as i64, report.genus))
+                (format, (report.shells.len() as i64, report.genus))
             }
         };
         let of_format = |f: &&File| f.format == format;
