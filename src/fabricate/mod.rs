@@ -12,10 +12,16 @@
 
 mod bridge;
 mod caps;
+mod enforce;
+mod material;
+mod process;
 mod snap;
 mod solid;
 
 pub use bridge::{Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts, bridge};
+pub use enforce::{Change, EnforceError, EnforceOptions, Enforced, TIP, enforce};
+pub use material::{Material, MaterialReport};
+pub use process::{Process, Workshop, WorkshopError, table as process_table};
 pub use snap::snapped_to_f32;
 pub use solid::{Solid, extrude};
 

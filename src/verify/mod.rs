@@ -37,7 +37,7 @@ pub use certificate::{
 pub use check::{Between, Expected, Mismatch};
 pub use endure::{endures_dilation, endures_erosion};
 pub use error::VerifyError;
-pub use narrowest::{Narrowest, Widths, min_feature, min_gap, widths};
+pub use narrowest::{NarrowPlaces, Narrowest, Widths, min_feature, min_gap, narrow_places, widths};
 pub use shells::{Shell, StlFault, StlFaultKind, StlReport};
 pub use stl::read_stl;
 pub use svg::{SvgFault, SvgReport, read_svg};
