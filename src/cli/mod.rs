@@ -14,6 +14,7 @@ macro_rules! say {
 
 mod args;
 mod extrude;
+mod make;
 mod progress;
 mod rect;
 mod run;

@@ -12,6 +12,7 @@ use super::cut::{Cut, read_exemplar, slice};
 use super::describe::describe;
 use super::error::JobError;
 use super::extrude::{check_stl, file_name, name};
+use super::making::{self, CostReport};
 use super::output::{Format, Output, Pending, Target, persist};
 use super::part::{Part, PartError};
 use super::plan::Plan;
@@ -151,6 +152,7 @@ impl Band {
                 let inside = bridging::inside(map).map(|p| p + band.part.shift_mm);
                 clock.time(Stage::Bridge, || band.lay_bridges(width_mm, inside))?;
             }
+            band.enforce(clock)?;
             // A drawing that does not pass is left for `deliver` to tell of, which knows the name of its file.
             if let Err(JobError::Mismatch { mismatch, .. }) = band.pass(clock) {
                 is_fine_enough &= !matches!(mismatch, Mismatch::Components { .. } | Mismatch::Holes { .. });
@@ -223,6 +225,22 @@ impl Band {
         Ok(())
     }
 
+    /// Thickens what is too thin and widens what is too narrow, if that was asked for.
+    pub(super) fn enforce(&mut self, clock: &mut Clock<'_>) -> Result<(), JobError> {
+        if !self.job.options.enforce {
+            return Ok(());
+        }
+        let made =
+            clock.time(Stage::Enforce, || making::enforced(&self.part.region, &self.job.tolerances))?;
+        let Some((region, enforced)) = made else { return Ok(()) };
+        self.part.region = fabricate::snapped_to_f32(&region)?;
+        let made = &mut self.report.made;
+        made.notes.push(enforced.note());
+        (made.area_mm2, made.vertices) = (self.part.region.area_mm2(), self.part.region.vertices());
+        made.enforced = Some(enforced);
+        Ok(())
+    }
+
     /// The part in millimetres, y up from the lower left corner of its page.
     pub fn region(&self) -> &Region {
         &self.part.region
@@ -275,7 +293,9 @@ impl Band {
         })?;
         let mut pending = Vec::new();
         let mut digests = Vec::new();
+        let mut sizes = Vec::new();
         let mut digest = |output: &Output, bytes: &[u8]| {
+            sizes.push(bytes.len());
             let file = name(output.target()).display().to_string();
             digests.push(FileDigest { file, format: output.format().name(), sha256: sha256(bytes) });
         };
@@ -320,11 +340,17 @@ impl Band {
                 narrowest.width_mm
             ));
         }
+        report.made.bytes = sizes;
         report.made.certificate.seal([found.components, found.holes], digests);
         report.components = found.components;
         report.holes = found.holes;
         report.made.min_feature = found.min_feature;
         report.made.min_gap = found.min_gap;
+        report.made.narrow_places =
+            clock.time(Stage::Verify, || making::worst_places(&found.region, &self.job.tolerances));
+        let options = &self.job.options;
+        report.made.cost =
+            Some(CostReport::new(&self.part.region, options.thickness_mm, options.material.as_ref()));
         report.made.files = outputs.iter().map(|o| name(o.target()).display().to_string()).collect();
         report.made.times.extend(clock.times);
         Ok((report, pending))
@@ -392,8 +418,10 @@ impl Band {
         let scale = |narrowest: Option<Narrowest>, wanted: f64, option: &str| {
             let factor = narrowest.map(|n| wanted / n.width_mm).filter(|f| f.is_finite() && *f < 100.0);
             let width = factor.map(|f| format!("--width {:.0}mm or more", (self.report.width_mm * f).ceil()));
+            // A tile cannot be mended, and what was mended has been.
+            let mend = if self.job.options.enforce { "" } else { "--enforce would mend it, or " };
             format!(
-                "; {} would do, or a smaller {option}",
+                "; {mend}{} would do, or a smaller {option}",
                 width.unwrap_or_else(|| "a larger --width".to_owned())
             )
         };

@@ -9,6 +9,7 @@ use super::output::{Output, Target};
 use super::plan::DEFAULT_MEMORY_LIMIT;
 use super::stage::Stage;
 use crate::domain::CurveSpec;
+use crate::fabricate::Material;
 use crate::fit::StitchMethod;
 use crate::pieces::CostWeights;
 use crate::planar::Tolerances;
@@ -48,6 +49,8 @@ pub struct BandBuilder {
     pub(super) choice: Choice,
     pub(super) counted: bool,
     pub(super) memory_limit: usize,
+    pub(super) enforce: bool,
+    pub(super) material: Option<Material>,
     chord_mm: f64,
     min_feature_mm: f64,
     min_gap_mm: f64,
@@ -77,6 +80,8 @@ impl BandBuilder {
             choice: Choice::default(),
             counted: false,
             memory_limit: DEFAULT_MEMORY_LIMIT,
+            enforce: false,
+            material: None,
             chord_mm: Tolerances::DEFAULT_CHORD_MM,
             min_feature_mm: 0.0,
             min_gap_mm: 0.0,
@@ -180,6 +185,19 @@ impl BandBuilder {
         self
     }
 
+    /// Whether ink that is too thin is thickened to the minimum feature, and gaps that are too narrow are widened to the
+    /// minimum gap, before the part is checked.
+    pub fn enforce(mut self, enforce: bool) -> Self {
+        self.enforce = enforce;
+        self
+    }
+
+    /// The material, for the mass in the report.
+    pub fn material(mut self, material: Material) -> Self {
+        self.material = Some(material);
+        self
+    }
+
     /// How pieces are bent to meet.
     pub fn stitch(mut self, stitch: StitchMethod) -> Self {
         self.stitch = stitch;
@@ -243,6 +261,13 @@ impl BandBuilder {
                 found: "a pattern that goes all the way round has a hole, its inside, but --holes 0 was asked for"
                     .to_owned(),
                 wanted: "ask for --holes 1 or more, or leave one of the two out".to_owned(),
+            });
+        }
+        if self.enforce && tolerances.min_feature_mm() == 0.0 && tolerances.min_gap_mm() == 0.0 {
+            return Err(JobError::Option {
+                option: "--enforce",
+                found: "there is no width to enforce".to_owned(),
+                wanted: "name a --process, or give --min-feature or --min-gap".to_owned(),
             });
         }
         let variety = (self.beta > 0.0).then(|| Variety::new(self.beta));

@@ -8,7 +8,7 @@ use thiserror::Error;
 use crate::domain::DomainError;
 use crate::exemplar::ExemplarError;
 use crate::export::ExportError;
-use crate::fabricate::{BridgeError, FabricateError};
+use crate::fabricate::{BridgeError, EnforceError, FabricateError};
 use crate::fit::FitError;
 use crate::pieces::CostWeightsError;
 use crate::planar::TolerancesError;
@@ -72,6 +72,11 @@ pub enum JobError {
     /// Bridges cannot be laid.
     #[error("--bridge: {0}. Nothing was written")]
     Bridge(#[from] BridgeError),
+    /// Minimum feature and gap cannot be enforced.
+    #[error(
+        "--enforce: {0}; a larger --width would do, or a smaller --min-feature or --min-gap. Nothing was written"
+    )]
+    Enforce(#[from] EnforceError),
     /// The solid cannot be made.
     #[error(transparent)]
     Fabricate(#[from] FabricateError),
@@ -134,6 +139,8 @@ impl JobError {
             Self::Slicing(SlicingError::TooThin { .. }) => 3,
             Self::Slicing(_) => 2,
             Self::Bridge(BridgeError::Width { .. }) => 2,
+            Self::Enforce(EnforceError::Width { .. }) => 2,
+            Self::Enforce(_) => 3,
             Self::Refused(_) | Self::SearchTooLarge { .. } | Self::Bridge(_) => 3,
             Self::Fabricate(FabricateError::Thickness { .. }) => 2,
             Self::Outline { .. }

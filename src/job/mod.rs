@@ -32,6 +32,7 @@ mod describe;
 mod error;
 mod extrude;
 mod json;
+mod making;
 mod notes;
 mod output;
 mod part;
@@ -62,7 +63,8 @@ pub use certificate::{
 pub use choice::{Choice, Chosen, DEFAULT_TEMPERATURE, choose};
 pub use cut::READ_SHARE;
 pub use error::{JobError, OutlineFault};
-pub use extrude::{ExtrudeBridges, ExtrudeReport, extrude};
+pub use extrude::{ExtrudeBridges, ExtrudeMaking, ExtrudeReport, extrude};
+pub use making::{CostReport, EnforcedReport};
 pub use output::{Format, Output, Target};
 pub use plan::{DEFAULT_MEMORY_LIMIT, Plan, PlanError, PlanOptions, plan};
 pub use rect::Rect;
@@ -77,5 +79,6 @@ pub use several::write_numbered;
 pub use stage::Stage;
 pub use ways::WayReport;
 
+pub use crate::fabricate::{Material, Process, Workshop};
 pub use crate::fit::StitchMethod;
 pub use crate::topology::{Wanted, WantedError};

@@ -19,6 +19,8 @@ pub enum Stage {
     Map,
     /// Struts and slits, when they are needed.
     Bridge,
+    /// Thickening and widening, when they are asked for.
+    Enforce,
     /// The SVG file.
     Svg,
     /// The solid and the STL file.
@@ -31,13 +33,14 @@ pub enum Stage {
 
 impl Stage {
     /// All stages.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Read,
         Self::Slice,
         Self::Solve,
         Self::Fit,
         Self::Map,
         Self::Bridge,
+        Self::Enforce,
         Self::Svg,
         Self::Stl,
         Self::Png,
@@ -53,6 +56,7 @@ impl Stage {
             Self::Fit => "fit",
             Self::Map => "map",
             Self::Bridge => "bridge",
+            Self::Enforce => "enforce",
             Self::Svg => "svg",
             Self::Stl => "stl",
             Self::Png => "png",

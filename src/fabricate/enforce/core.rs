@@ -13,6 +13,8 @@ use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 use crate::planar::{EdgeIndex, Region, Sets};
 
+/// A middle of an edge is no better than half of its length, and good from this part on.
+const CENTRED: f64 = 0.45;
 /// Points of an edge that are looked at for the one farthest from all contours.
 const SAMPLES: usize = 15;
 /// Finer looks around the best of them, each at half the distance.
@@ -43,10 +45,10 @@ type Mesh = ConstrainedDelaunayTriangulation<Point2<f64>>;
 /// How finely cores are computed. Lengths are millimetres.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fineness {
-    /// Half of the width from which on ink need not be measured any more.
-    pub(super) ink: f64,
-    /// The same of gaps.
-    pub(super) gap: f64,
+    /// Halves of the widths, of ink and of gaps, that are wide enough.
+    pub(super) enough: [f64; 2],
+    /// Halves of the widths from which on nothing need be measured.
+    pub(super) hold: [f64; 2],
     /// The longest edge of a contour that is not divided.
     pub(super) spacing: f64,
 }
@@ -57,13 +59,13 @@ pub(super) fn cores(region: &Region, index: &EdgeIndex, fineness: &Fineness) -> 
     let ink = ink_faces(&mesh);
     let mut cores = [Core::default(), Core::default()];
     let side_of = |is_ink: bool| usize::from(!is_ink);
-    let halves = [fineness.ink, fineness.gap];
     let mut crossing = vec![usize::MAX; mesh.num_undirected_edges()];
     for edge in mesh.undirected_edges().filter(|edge| !edge.is_constraint_edge()) {
         let Some(face) = edge.as_directed().face().as_inner() else { continue };
         let side = side_of(ink[face.index()]);
         let ends = edge.positions().map(|p| DVec2::new(p.x, p.y));
-        crossing[edge.index()] = cores[side].add(index, widest(index, ends, halves[side]));
+        crossing[edge.index()] =
+            cores[side].add(index, widest(index, ends, [fineness.enough[side], fineness.hold[side]]));
     }
     for face in mesh.inner_faces() {
         let core = &mut cores[side_of(ink[face.index()])];
@@ -81,9 +83,15 @@ pub(super) fn cores(region: &Region, index: &EdgeIndex, fineness: &Fineness) -> 
                 let end = core.add(index, tip);
                 core.links.push([a, end]);
             }
+            // Ways meet in the middle, or where one of them crosses its edge if that is wider: a triangle with a corner
+            // in a notch has its middle near the notch.
             _ => {
-                let middle = core.add(index, middle(corners));
-                core.links.extend(open.iter().map(|&a| [a, middle]));
+                let middle = middle(corners);
+                let wider = open.iter().copied().filter(|&a| core.nodes[a].radius > radius(index, middle));
+                let widest =
+                    wider.reduce(|a, b| if core.nodes[b].radius > core.nodes[a].radius { b } else { a });
+                let meet = widest.unwrap_or_else(|| core.add(index, middle));
+                core.links.extend(open.iter().filter(|&&a| a != meet).map(|&a| [a, meet]));
             }
         }
     }
@@ -123,11 +131,11 @@ pub(super) fn radius(index: &EdgeIndex, at: DVec2) -> f64 {
     index.nearest(at).map_or(f64::INFINITY, |edge| edge.nearest(at).distance(at))
 }
 
-/// The point where an edge of the triangulation is crossed: its middle, or where that seems narrower than `half` and
-/// the edge is longer than so narrow a place, the point farthest from all contours.
-fn widest(index: &EdgeIndex, [a, b]: [DVec2; 2], half: f64) -> DVec2 {
-    let middle = a.midpoint(b);
-    if a.distance(b) < 2.0 * half || radius(index, middle) >= half {
+/// The point where an edge of the triangulation is crossed: its middle if that is as wide as matters or as can be, or
+/// else the point farthest from all contours. An edge shorter than what is wide enough is narrow wherever it is crossed.
+fn widest(index: &EdgeIndex, [a, b]: [DVec2; 2], [enough, hold]: [f64; 2]) -> DVec2 {
+    let (middle, length) = (a.midpoint(b), a.distance(b));
+    if length < 2.0 * enough || radius(index, middle) >= hold.min(CENTRED * length) {
         return middle;
     }
     let at = |t: f64| (radius(index, a.lerp(b, t)), t);
@@ -174,7 +182,7 @@ fn mesh(region: &Region, fineness: &Fineness) -> Mesh {
         close(&points, first);
     }
     // So far away that what lies between is no narrow gap.
-    let far = (high - low).length() + 8.0 * fineness.gap.max(fineness.ink);
+    let far = (high - low).length() + 8.0 * fineness.hold[0].max(fineness.hold[1]);
     let (low, high) = (low - far, high + far);
     let first = points.len();
     points.extend([

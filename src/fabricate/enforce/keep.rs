@@ -68,6 +68,52 @@ impl Kept {
     }
 }
 
+/// A lump is one when its neck is narrower than this part of it. More, and every unevenness of a core is a lump, which
+/// takes room from the other side; less, and a lump may be worn down to the width of its neck.
+const NECK: f64 = 0.8;
+
+impl Kept {
+    /// What of it must be left alone by the other side, which takes nothing from where the radius is `hold_mm` or more:
+    /// free ends are drawn back into the wide, or to the middle of the lump that they end in.
+    pub(super) fn drawn_back(&self, core: &Core, hold_mm: f64) -> Self {
+        let n = core.nodes.len();
+        let ways = Ways::new(core);
+        let mut kept = self.nodes.clone();
+        let degree = |i: usize, kept: &[bool]| ways.from(i).iter().filter(|&&to| kept[to]).count();
+        let mut left: Vec<usize> = (0..n).map(|i| degree(i, &self.nodes)).collect();
+        let mut held = vec![false; n];
+        let mut widest: Vec<f64> = core.nodes.iter().map(|node| node.radius).collect();
+        let mut outer = vec![NONE; n];
+        let is_loose = |i: usize, left: &[usize]| left[i] <= 1 && core.nodes[i].radius < hold_mm;
+        let mut loose: VecDeque<usize> = (0..n).filter(|&i| kept[i] && is_loose(i, &left)).collect();
+        while let Some(i) = loose.pop_front() {
+            if !kept[i] || held[i] {
+                continue;
+            }
+            let inner = ways.from(i).iter().copied().find(|&to| kept[to]);
+            let Some(to) = inner.filter(|&to| core.nodes[to].radius >= NECK * widest[i]) else {
+                let mut at = i;
+                held[at] = true;
+                while outer[at] != NONE {
+                    at = outer[at];
+                    held[at] = true;
+                }
+                continue;
+            };
+            kept[i] = false;
+            left[to] -= 1;
+            if widest[i] > widest[to] {
+                (widest[to], outer[to]) = (widest[i], i);
+            }
+            if is_loose(to, &left) {
+                loose.push_back(to);
+            }
+        }
+        (0..n).for_each(|i| kept[i] |= held[i]);
+        Self { nodes: kept }
+    }
+}
+
 /// The neighbours of each node, one after the other.
 struct Ways {
     first: Vec<usize>,
@@ -132,6 +178,19 @@ mod tests {
         let core = chain(&[2.0, 0.1, 0.1, 0.1, 0.1, 0.1, 0.0]);
         assert_eq!(kept(&core, 10.0), [0]);
         assert_eq!(kept(&core, 3.0), [0, 1, 2, 3, 4, 5]);
+    }
+
+    #[test]
+    fn what_is_left_alone_ends_in_the_wide_and_in_lumps() {
+        let drawn_back = |radii: &[f64]| {
+            let core = chain(radii);
+            let kept = Kept::new(&core, 1.0, 10.0).drawn_back(&core, 5.0).nodes;
+            (0..kept.len()).filter(|&i| kept[i]).collect::<Vec<_>>()
+        };
+        assert_eq!(drawn_back(&[0.5, 1.5, 2.0, 3.0, 6.0, 5.5, 4.0, 2.0]), [4, 5]);
+        // On the left a lump of 3 behind a neck of 2; on the right only an unevenness.
+        assert_eq!(drawn_back(&[1.0, 3.0, 2.5, 2.0, 4.0, 6.0, 4.0, 3.9, 4.2]), [1, 2, 3, 4, 5]);
+        assert_eq!(drawn_back(&[1.1, 1.2, 1.1]), [1]);
     }
 
     #[test]

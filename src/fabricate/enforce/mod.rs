@@ -37,6 +37,10 @@ use crate::planar::{EdgeIndex, Region};
 /// Steps for ink and gaps, at most. Ink that is blocked on one side halves what it lacks with each, so that this many
 /// leave nothing to speak of; more only take time where there is no room.
 const ROUNDS: usize = 24;
+/// It is no progress when what lacks most lacks more than this part of what it did, and after so many steps without any
+/// there is no room. Fewer steps, and ink that is blocked for a while is given up; more only take time.
+const PROGRESS: f64 = 0.97;
+const PATIENCE: usize = 6;
 /// What is made is wider than what is wanted by this part: the distances along a core are those at its nodes, and
 /// between them it may be narrower by a hundredth.
 const WANTED: f64 = 1.03;
@@ -49,6 +53,9 @@ const UNASKED: f64 = 0.1;
 /// Ink that ends freely is a tip when it is thin for no more than so many minimum features, as are the tips of wedges
 /// of more than 17 degrees; longer, and it is a hair.
 pub const TIP: f64 = 3.0;
+/// How far the outside is taken along around the ink, in diagonals of its box: more than a core reaches, which goes one
+/// and a little farther.
+const FRAME: f64 = 16.0;
 /// Changes of less area than this part of a disc of the width are rounding.
 const LEAST_CHANGE: f64 = 1e-3;
 
@@ -132,14 +139,23 @@ pub fn enforce(region: &Region, options: &EnforceOptions) -> Result<Enforced, En
     let job = Job::new(options, within);
     let mut now = region.clone();
     let mut narrowest = None;
+    let (mut least_lack, mut last_progress) = (f64::INFINITY, 0);
     for round in 0..2 * ROUNDS {
-        let side = if round % 2 == 0 { Side::Ink } else { Side::Gap };
         let survey = job.survey(&now);
         narrowest = survey.narrowest();
         if narrowest.is_none() {
             return Ok(changed(region, now, options));
         }
-        if let Some(grown) = job.step(&now, &survey, side).filter(|grown| Counts::of(grown) == counts) {
+        // Where there is no room, what lacks most soon stops to lack less.
+        let lack = survey.greatest_lack(&job);
+        if lack < PROGRESS * least_lack {
+            (least_lack, last_progress) = (lack, round);
+        } else if round - last_progress >= PATIENCE {
+            break;
+        }
+        let turns = if round % 2 == 0 { [Side::Ink, Side::Gap] } else { [Side::Gap, Side::Ink] };
+        let step = turns.into_iter().find_map(|side| job.step(&now, &survey, side));
+        if let Some(grown) = step.filter(|grown| Counts::of(grown) == counts) {
             now = grown;
         }
     }
@@ -206,7 +222,8 @@ struct Job {
 /// Both sides as they are.
 struct Survey {
     cores: [Core; 2],
-    kept: [Kept; 2],
+    /// What of the cores the other side leaves alone.
+    guarded: [Kept; 2],
     lacking: [Vec<Stroke>; 2],
     index: EdgeIndex,
 }
@@ -229,16 +246,22 @@ impl Job {
     fn survey(&self, region: &Region) -> Survey {
         let index = EdgeIndex::new(region);
         let enough = self.halves.map(|half| ENOUGH * half);
-        let fineness = Fineness { ink: enough[0], gap: enough[1], spacing: self.spacing };
+        // A stroke takes no more from the other side than its own width.
+        let hold = [0, 1].map(|side| self.guards[side] + 2.0 * WANTED * self.halves[1 - side]);
+        let fineness = Fineness { enough, hold, spacing: self.spacing };
         let cores = cores(region, &index, &fineness);
-        let tips = [TIP * 2.0 * self.halves[0], f64::INFINITY];
-        let kept = [0, 1].map(|side| Kept::new(&cores[side], enough[side], tips[side]));
+        let hair = if self.halves[0] > 0.0 { TIP * 2.0 * self.halves[0] } else { f64::INFINITY };
+        let tips = [hair, f64::INFINITY];
+        // A side of which nothing is asked is held together where it is narrow, but may lose its corners.
+        let kept =
+            [0, 1].map(|side| Kept::new(&cores[side], enough[side].max(self.guards[side]), tips[side]));
         let lacking = [0, 1].map(|side| {
             let radii = [enough[side], WANTED * self.halves[side]];
             let strokes = lacking(&cores[side], &kept[side], &index, radii, self.spacing);
             merged(&strokes, self.chord_mm)
         });
-        Survey { cores, kept, lacking, index }
+        let guarded = [0, 1].map(|side| kept[side].drawn_back(&cores[side], hold[side]));
+        Survey { cores, guarded, lacking, index }
     }
 
     /// The region after one side has grown; `None` when that side lacks nothing.
@@ -248,7 +271,7 @@ impl Job {
         if strokes.is_empty() {
             return None;
         }
-        let guards = guards(&survey.cores[other], &survey.kept[other], self.guards[other], strokes);
+        let guards = guards(&survey.cores[other], &survey.guarded[other], self.guards[other], strokes);
         let guards = merged(&guards, 0.0);
         let points = survey.points();
         let frame = self.frame(region);
@@ -263,10 +286,10 @@ impl Job {
         })
     }
 
-    /// A box around everything, which bounds the outside.
+    /// A box around everything, and around the frame of the cores too.
     fn frame(&self, region: &Region) -> (DVec2, DVec2) {
         let (low, high) = region.bounds_mm().unwrap_or(self.within);
-        let margin = high - low + 8.0 * (self.guards[0] + self.guards[1]);
+        let margin = FRAME * ((high - low).length() + self.guards[0] + self.guards[1]);
         (low - margin, high + margin)
     }
 }
@@ -275,6 +298,15 @@ impl Survey {
     /// A point of each part, first of ink and then of gaps. Parts that nothing holds are still parts.
     fn points(&self) -> [Vec<DVec2>; 2] {
         self.cores.each_ref().map(|core| core.widest_of_parts().iter().map(|node| node.at).collect())
+    }
+
+    /// How much the narrowest place lacks, as a part of what is wanted.
+    fn greatest_lack(&self, job: &Job) -> f64 {
+        let lacks = [0, 1].into_iter().flat_map(|side| {
+            let ends = self.lacking[side].iter().flat_map(|stroke| [stroke.from, stroke.to]);
+            ends.map(move |at| 1.0 - core::radius(&self.index, at) / (WANTED * job.halves[side]))
+        });
+        lacks.fold(0.0, f64::max)
     }
 
     /// What lacks most, where, and how wide it is; `None` when nothing is lacking.
