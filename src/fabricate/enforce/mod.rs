@@ -3,10 +3,10 @@
 //! The ink and the gaps each have a *core*, lines in their middle to which they can be shrunk without changing a count
 //! ([`core`]). Where ink that holds something together is thinner than the minimum feature ([`keep`]), a disc of that
 //! size is moved along the core and added ([`stroke`]); where a gap is narrower than the minimum gap, one is taken
-//! away. A stroke stops at the core of the other side, with as much around it as that side has, up to what it needs
-//! ([`grow`]). So no step changes components or holes or makes the other side narrower than it may be. Ink beside a
-//! narrow gap grows on its other side only: its core moves there, and the next step starts from that. Steps for ink and
-//! gaps alternate until nothing is lacking.
+//! away. A stroke stops at the core of the other side, with as much around it as that side has, up to what it needs, or
+//! half of that where ink gives way to a gap ([`grow`]). So no step changes components or holes. Ink beside a narrow gap
+//! grows on its other side only: its core moves there, and the next step starts from that. Steps for ink and gaps alternate
+//! until nothing is lacking.
 //!
 //! Two strands and the gap between them may need more room than there is. Then nothing is lacking never comes, and
 //! [`EnforceError::Crowded`] names the place. The box around the ink is never left, so that the part keeps its size.
@@ -37,8 +37,12 @@ use crate::planar::{EdgeIndex, Region};
 /// Steps for ink and gaps, at most. Ink that is blocked on one side halves what it lacks with each, so that this many
 /// leave nothing to speak of; more only take time where there is no room.
 const ROUNDS: usize = 24;
-/// It is no progress when what lacks most lacks more than this part of what it did, and after so many steps without any
-/// there is no room. Fewer steps, and ink that is blocked for a while is given up; more only take time.
+/// Ink beside a gap that is widened keeps this part of the minimum feature, and grows again on its other side, so that
+/// strands can give way. All of it, and strands that are just wide enough hold a narrow gap between them for ever; much
+/// less, and what has no other side is worn to a thread before it is refused.
+const YIELD: f64 = 0.5;
+/// It is no progress when more than this part of what lacked is still lacking, and after so many steps without any there is
+/// no room. Fewer steps, and ink that is blocked for a while is given up; more only take time.
 const PROGRESS: f64 = 0.97;
 const PATIENCE: usize = 6;
 /// What is made is wider than what is wanted by this part: the distances along a core are those at its nodes, and
@@ -46,6 +50,8 @@ const PATIENCE: usize = 6;
 const WANTED: f64 = 1.03;
 /// Less than that, and there is something lacking; nearer to [`WANTED`], and rounding would count as lacking.
 const ENOUGH: f64 = 1.015;
+/// What is stuck just below [`ENOUGH`] is good from this part of what is wanted on.
+const GOOD: f64 = 1.002;
 /// Of the lesser width, how far points of contours are apart at most, so that narrow strips are crossed often enough.
 const SPACING: f64 = 1.0 / 3.0;
 /// Where only one of the two widths is wanted, the other side keeps what it has up to this part of the width.
@@ -146,10 +152,12 @@ pub fn enforce(region: &Region, options: &EnforceOptions) -> Result<Enforced, En
         if narrowest.is_none() {
             return Ok(changed(region, now, options));
         }
-        // Where there is no room, what lacks most soon stops to lack less.
-        let lack = survey.greatest_lack(&job);
+        // Where there is no room, what lacks soon stops to become less.
+        let lack = survey.lack(&job);
         if lack < PROGRESS * least_lack {
             (least_lack, last_progress) = (lack, round);
+        } else if survey.is_good(&job) {
+            return Ok(changed(region, now, options));
         } else if round - last_progress >= PATIENCE {
             break;
         }
@@ -271,7 +279,8 @@ impl Job {
         if strokes.is_empty() {
             return None;
         }
-        let guards = guards(&survey.cores[other], &survey.guarded[other], self.guards[other], strokes);
+        let most = self.guards[other] * if side == Side::Gap { YIELD } else { 1.0 };
+        let guards = guards(&survey.cores[other], &survey.guarded[other], most, strokes);
         let guards = merged(&guards, 0.0);
         let points = survey.points();
         let frame = self.frame(region);
@@ -300,13 +309,24 @@ impl Survey {
         self.cores.each_ref().map(|core| core.widest_of_parts().iter().map(|node| node.at).collect())
     }
 
-    /// How much the narrowest place lacks, as a part of what is wanted.
-    fn greatest_lack(&self, job: &Job) -> f64 {
+    /// What is lacking altogether: the length of all that is too narrow, each by the part of its width that it lacks.
+    fn lack(&self, job: &Job) -> f64 {
         let lacks = [0, 1].into_iter().flat_map(|side| {
-            let ends = self.lacking[side].iter().flat_map(|stroke| [stroke.from, stroke.to]);
-            ends.map(move |at| 1.0 - core::radius(&self.index, at) / (WANTED * job.halves[side]))
+            self.lacking[side].iter().map(move |stroke| {
+                let ends = [stroke.from, stroke.to].map(|at| core::radius(&self.index, at));
+                let length = stroke.from.distance(stroke.to) + job.halves[side];
+                length * (1.0 - 0.5 * (ends[0] + ends[1]) / (WANTED * job.halves[side])).max(0.0)
+            })
         });
-        lacks.fold(0.0, f64::max)
+        lacks.sum()
+    }
+
+    /// Whether what lacks is as wide as it must be, though not quite as wide as it was to become.
+    fn is_good(&self, job: &Job) -> bool {
+        [0, 1].into_iter().all(|side| {
+            let mut ends = self.lacking[side].iter().flat_map(|stroke| [stroke.from, stroke.to]);
+            ends.all(|at| core::radius(&self.index, at) >= GOOD * job.halves[side])
+        })
     }
 
     /// What lacks most, where, and how wide it is; `None` when nothing is lacking.
