@@ -58,7 +58,7 @@ const OWED: [(&str, &str); 3] = [
 ];
 
 /// Libraries that only these files or folders may name.
-const LIBRARIES: [(&str, &[&str]); 13] = [
+const LIBRARIES: [(&str, &[&str]); 14] = [
     ("i_overlay", &["src/planar/overlay.rs", "src/fabricate/caps.rs"]),
     ("i_triangle", &["src/fabricate/caps.rs"]),
     ("spade", &["src/verify", "src/fit/links.rs", "src/fabricate/enforce/core.rs"]),
@@ -69,6 +69,7 @@ const LIBRARIES: [(&str, &[&str]); 13] = [
     ("svgtypes", &["src/exemplar"]),
     ("simplecss", &["src/exemplar"]),
     ("tempfile", &["src/export/staged.rs"]),
+    ("toml", &["src/fabricate/process.rs"]),
     ("clap", &["src/cli"]),
     ("indicatif", &["src/cli/progress.rs"]),
     ("ctrlc", &["src/cli/mod.rs"]),

@@ -6,7 +6,8 @@
 //! vertices. The solid is therefore closed by construction and writing it changes nothing: a region of b0
 //! components and b1 holes becomes b0 shells of total genus b1.
 //!
-//! Before that, bridges may give the region other counts ([`bridge()`]).
+//! Before that, bridges may give the region other counts ([`bridge()`]), and what is too thin or too narrow for a machine
+//! ([`Process`]) may be mended ([`enforce()`]).
 //!
 //! Excluded: files, curved fronts, kerf. Nothing here knows how the region came to be.
 

@@ -34,7 +34,7 @@ pub(super) fn grown(
     let covered = |strokes: &[Stroke]| {
         let polygons: Vec<Vec<GridPoint>> =
             strokes.iter().map(|stroke| stroke.polygon(grid, bounds.chord_mm)).collect();
-        paths(&boundaries(&polygons, FillRule::NonZero), false)
+        paths(&boundaries(&polygons, FillRule::NonZero))
     };
     // Positive where a stroke is (1), in the box (1 less 1), and no guard (−1); or where the set is (3).
     let mut layers = covered(strokes);
@@ -83,15 +83,11 @@ fn tidied(region: Region, own: &[DVec2], other: &[DVec2]) -> Region {
     if kept.len() == region.contours().count() {
         return region;
     }
-    Region::fill(grid, &paths(&kept, false), FillRule::Positive)
+    Region::fill(grid, &paths(&kept), FillRule::Positive)
 }
 
-fn paths(contours: &[Contour], backwards: bool) -> Vec<Vec<GridPoint>> {
-    let path = |contour: &Contour| {
-        let points = contour.points().to_vec();
-        if backwards { reversed(points) } else { points }
-    };
-    contours.iter().map(path).collect()
+fn paths(contours: &[Contour]) -> Vec<Vec<GridPoint>> {
+    contours.iter().map(|contour| contour.points().to_vec()).collect()
 }
 
 fn reversed(mut path: Vec<GridPoint>) -> Vec<GridPoint> {

@@ -1,7 +1,7 @@
 //! Minimum feature and gap, enforced: what is too thin is thickened, what is too narrow is widened, and nothing else.
 //!
 //! The ink and the gaps each have a *core*, lines in their middle to which they can be shrunk without changing a count
-//! ([`core`]). Where ink that holds something together is thinner than the minimum feature ([`keep`]), a disc of that
+//! ([`self::core`]). Where ink that holds something together is thinner than the minimum feature ([`keep`]), a disc of that
 //! size is moved along the core and added ([`stroke`]); where a gap is narrower than the minimum gap, one is taken
 //! away. A stroke stops at the core of the other side, with as much around it as that side has, up to what it needs, or
 //! half of that where ink gives way to a gap ([`grow`]). So no step changes components or holes. Ink beside a narrow gap
