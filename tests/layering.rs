@@ -58,10 +58,10 @@ const OWED: [(&str, &str); 3] = [
 ];
 
 /// Libraries that only these files or folders may name.
-const LIBRARIES: [(&str, &[&str]); 15] = [
+const LIBRARIES: [(&str, &[&str]); 16] = [
     ("i_overlay", &["src/planar/overlay.rs", "src/fabricate/caps.rs"]),
     ("i_triangle", &["src/fabricate/caps.rs"]),
-    ("spade", &["src/verify", "src/fit/links.rs"]),
+    ("spade", &["src/verify", "src/fit/links.rs", "src/fabricate/enforce/core.rs"]),
     ("faer", &["src/fit/least_squares.rs"]),
     ("petgraph", &["src/reeb"]),
     ("usvg", &["src/exemplar", "src/verify", "src/analysis/overlay.rs"]),
@@ -69,6 +69,7 @@ const LIBRARIES: [(&str, &[&str]); 15] = [
     ("svgtypes", &["src/exemplar"]),
     ("simplecss", &["src/exemplar"]),
     ("tempfile", &["src/export/staged.rs"]),
+    ("toml", &["src/fabricate/process.rs", "src/cli/preset.rs"]),
     ("zip", &["src/export/threemf.rs", "src/verify/threemf.rs"]),
     ("robust", &["src/verify/crossings.rs"]),
     ("clap", &["src/cli"]),

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 
 use super::laser::LaserArgs;
+use super::make::MakeArgs;
+use super::picture::PictureArgs;
 use super::print::PrintArgs;
 use super::values;
 use crate::domain::{CurveSpec, RectSize};
@@ -215,9 +217,6 @@ pub(super) struct PatternArguments {
     /// tried takes 8MB at most
     #[arg(long, value_name = "SIZE", value_parser = values::memory, default_value = "2GB")]
     pub(super) memory_limit: usize,
-    /// Thickness of the solid
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "2mm", allow_hyphen_values = true)]
-    pub(super) thickness: f64,
     /// Join components by struts and open holes by slits of this width, as few and as short as can be, where the ornament
     /// cannot give the components or holes asked for, or only with many jumps: a bridge costs as much as half a jump
     /// [default: none, and what cannot be is refused]
@@ -229,6 +228,10 @@ pub(super) struct PatternArguments {
     pub(super) tolerances: ToleranceArguments,
     #[command(flatten)]
     pub(super) laser: LaserArgs,
+    #[command(flatten)]
+    pub(super) make: MakeArgs,
+    #[command(flatten)]
+    pub(super) picture: PictureArgs,
     /// A file to write: .svg, .dxf, .stl, .3mf, .obj or .png; may be repeated; - is SVG on standard output
     #[arg(short, long, value_name = "FILE", required = true)]
     pub(super) output: Vec<PathBuf>,
@@ -248,9 +251,9 @@ pub(super) struct ToleranceArguments {
     /// Narrowest gap the machine keeps open; counts must survive dilating by half of it [default: not checked]
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(super) min_gap: Option<f64>,
-    /// Greatest distance between a curve and what stands for it
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "0.01mm", allow_hyphen_values = true)]
-    pub(super) chord: f64,
+    /// Greatest distance between a curve and what stands for it [default: that of the process, or 0.01mm]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    pub(super) chord: Option<f64>,
 }
 
 #[derive(Debug, Args)]
@@ -286,9 +289,6 @@ pub(super) struct AnalyzeArguments {
 pub(super) struct ExtrudeArguments {
     /// The drawing (SVG)
     pub(super) file: PathBuf,
-    /// Thickness of the solid
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "2mm", allow_hyphen_values = true)]
-    pub(super) thickness: f64,
     /// Lay bridges of this width so that the drawing has the components and holes asked for: struts join, slits open
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(super) bridge: Option<f64>,
@@ -298,13 +298,16 @@ pub(super) struct ExtrudeArguments {
     /// Holes that bridges are to make: a number, a range or any [default: as drawn]
     #[arg(long, value_name = "M", value_parser = values::wanted, requires = "bridge", allow_negative_numbers = true)]
     pub(super) holes: Option<values::Count>,
-    /// Greatest distance between a curve and its chords
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "0.01mm", allow_hyphen_values = true)]
-    pub(super) chord: f64,
+    #[command(flatten)]
+    pub(super) tolerances: ToleranceArguments,
     #[command(flatten)]
     pub(super) print: PrintArgs,
     #[command(flatten)]
     pub(super) laser: LaserArgs,
+    #[command(flatten)]
+    pub(super) make: MakeArgs,
+    #[command(flatten)]
+    pub(super) picture: PictureArgs,
     /// A file to write: .stl, .3mf, .obj, .svg (the outline, with its bridges), .dxf or .png; may be repeated; - is STL on
     /// standard output
     #[arg(short, long, value_name = "FILE", required = true)]

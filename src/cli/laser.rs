@@ -1,5 +1,7 @@
 //! Options for files that a laser or a waterjet cuts, and what is said of them.
 
+use std::path::PathBuf;
+
 use clap::{Args, ValueEnum};
 
 use super::values;
@@ -44,10 +46,13 @@ pub(super) enum Release {
 }
 
 impl LaserArgs {
-    pub(super) fn options(&self) -> LaserOptions {
+    /// The options; the kerf is that of a process where none was typed and something is cut.
+    pub(super) fn options(&self, of_process_mm: Option<f64>, outputs: &[PathBuf]) -> LaserOptions {
+        let is_dxf = |path: &PathBuf| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("dxf"));
+        let cuts = self.cut || outputs.iter().any(is_dxf);
         LaserOptions {
             cut: self.cut,
-            kerf_mm: self.kerf,
+            kerf_mm: self.kerf.or(of_process_mm.filter(|_| cuts)),
             curves: match self.curves {
                 CurveKind::Arcs => Curves::Arcs,
                 CurveKind::Polyline => Curves::Polyline,

@@ -15,6 +15,8 @@ macro_rules! say {
 mod args;
 mod extrude;
 mod laser;
+mod make;
+mod picture;
 mod print;
 mod progress;
 mod rect;

@@ -61,6 +61,7 @@ impl Progress {
             Stage::Fit => "fitting the pieces",
             Stage::Map => "mapping along the curve",
             Stage::Bridge => "laying bridges",
+            Stage::Enforce => "thickening and widening",
             Stage::Svg => "drawing",
             Stage::CutLines => "laying out the cuts",
             Stage::Stl => "building the solid",

@@ -15,8 +15,8 @@ use crate::analysis::{Analysis, AnalysisError};
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
 use crate::export;
 use crate::job::{
-    BandBuilder, BandReport, BridgesReport, Choice, DEFAULT_TEMPERATURE, Format, JobError, MadeReport,
-    Output, READ_SHARE, SlicingChoice, Target, write_numbered,
+    BandBuilder, BandReport, BridgesReport, Choice, CostReport, DEFAULT_TEMPERATURE, Format, JobError,
+    MadeReport, Output, READ_SHARE, SlicingChoice, Target, write_numbered,
 };
 use crate::pieces::CostWeights;
 use crate::planar::{Tolerances, TolerancesError};
@@ -82,7 +82,8 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, CliError> {
 
 pub(super) fn tolerances(arguments: &ToleranceArguments) -> Result<Tolerances, TolerancesError> {
     let or_none = |length: Option<f64>| length.unwrap_or(0.0);
-    Tolerances::new(arguments.chord, or_none(arguments.min_feature), or_none(arguments.min_gap))
+    let chord_mm = arguments.chord.unwrap_or(Tolerances::DEFAULT_CHORD_MM);
+    Tolerances::new(chord_mm, or_none(arguments.min_feature), or_none(arguments.min_gap))
 }
 
 pub(super) fn output(path: &Path, stdout: Format) -> Result<Output, JobError> {
@@ -185,7 +186,7 @@ pub(super) fn destinations(arguments: &PatternArguments) -> Result<(Vec<Output>,
     Ok((outputs, report_target))
 }
 
-fn builder(arguments: &BandArguments) -> Result<BandBuilder, JobError> {
+fn builder(arguments: &BandArguments) -> Result<BandBuilder, CliError> {
     let builder = BandBuilder::new(&arguments.exemplar, arguments.along.clone())
         .closed_pattern(arguments.closed_pattern)
         .choice(choice(arguments)?)
@@ -194,11 +195,12 @@ fn builder(arguments: &BandArguments) -> Result<BandBuilder, JobError> {
         Some(radius) => builder.round_mm(radius),
         None => builder,
     };
-    Ok(with_pattern(builder, &arguments.pattern))
+    with_pattern(builder, &arguments.pattern)
 }
 
 /// The options that a band and a rectangle share.
-pub(super) fn with_pattern(builder: BandBuilder, a: &PatternArguments) -> BandBuilder {
+pub(super) fn with_pattern(builder: BandBuilder, a: &PatternArguments) -> Result<BandBuilder, CliError> {
+    let made = a.make.made(&a.tolerances)?;
     let mut builder = builder
         .slicing(a.slicing)
         .mirror(a.mirror)
@@ -207,12 +209,17 @@ pub(super) fn with_pattern(builder: BandBuilder, a: &PatternArguments) -> BandBu
         .jump_cost(a.jump_cost)
         .stitch(a.stitch)
         .memory_limit(a.memory_limit)
-        .laser(a.laser.options())
-        .thickness_mm(a.thickness)
-        .print(a.print.options())
-        .chord_mm(a.tolerances.chord)
-        .min_feature_mm(a.tolerances.min_feature.unwrap_or(0.0))
-        .min_gap_mm(a.tolerances.min_gap.unwrap_or(0.0));
+        .thickness_mm(made.thickness_mm)
+        .chord_mm(made.chord_mm)
+        .min_feature_mm(made.min_feature_mm)
+        .min_gap_mm(made.min_gap_mm)
+        .enforce(a.make.enforce)
+        .laser(a.laser.options(made.kerf_mm, &a.output))
+        .picture(a.picture.options())
+        .print(a.print.options());
+    if let Some(material) = made.material {
+        builder = builder.material(material);
+    }
     for &range in &a.keep {
         builder = builder.keep(range);
     }
@@ -228,7 +235,7 @@ pub(super) fn with_pattern(builder: BandBuilder, a: &PatternArguments) -> BandBu
     if let Some(width) = a.bridge {
         builder = builder.bridge_mm(width);
     }
-    builder
+    Ok(builder)
 }
 
 /// How many bridges there are and where to find them; nothing where none were laid.
@@ -263,10 +270,18 @@ pub(super) fn say_found(made: &MadeReport) {
         let p = narrowest.position_mm;
         say!("narrowest {what} {:.3} mm, at ({:.1}, {:.1}) mm", narrowest.width_mm, p.x, p.y);
     }
+    say_cost(made.cost.as_ref());
     say_cuts(made.laser.as_ref());
     say_notes(&made.notes);
     for file in &made.files {
         say!("wrote {file}");
+    }
+}
+
+/// What the part takes of its material, if one was named.
+pub(super) fn say_cost(cost: Option<&CostReport>) {
+    if let Some((cost, material)) = cost.and_then(|cost| Some((cost, cost.material.as_ref()?))) {
+        say!("{:.1} mm3 of {}: {:.2} g", cost.volume_mm3, material.material.name, material.mass_g);
     }
 }
 

@@ -6,8 +6,9 @@
 //! vertices. The solid is therefore closed by construction and writing it changes nothing: a region of b0
 //! components and b1 holes becomes b0 shells of total genus b1.
 //!
-//! Before that, bridges may give the region other counts ([`bridge()`]). For a beam instead of a printer, contours
-//! make room for the kerf ([`compensated`]), and the part lies on a plate or is carved out of it ([`on_sheet`], [`carved`]).
+//! Before that, bridges may give the region other counts ([`bridge()`]), and what is too thin or too narrow for a machine
+//! ([`Process`]) may be mended ([`enforce()`]). For a beam instead of a printer, contours make room for the kerf
+//! ([`compensated`]), and the part lies on a plate or is carved out of it ([`on_sheet`], [`carved`]).
 //!
 //! Walls may be bevelled or sloped ([`raise()`]), the number of triangles limited ([`raise_within`]), and the part turned
 //! to fit a printer ([`Bed`]).
@@ -17,9 +18,12 @@
 mod bed;
 mod bridge;
 mod caps;
+mod enforce;
 mod inset;
 mod kerf;
 mod limit;
+mod material;
+mod process;
 mod profile;
 mod raise;
 mod sheet;
@@ -29,8 +33,11 @@ mod solid;
 
 pub use bed::Bed;
 pub use bridge::{Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts, bridge};
+pub use enforce::{Change, EnforceError, EnforceOptions, Enforced, TIP, enforce};
 pub use kerf::{KerfError, check_kerf, compensated};
 pub use limit::{Limited, raise_within};
+pub use material::{Material, MaterialReport};
+pub use process::{Process, Workshop, WorkshopError, table as process_table};
 pub use profile::Profile;
 pub use raise::raise;
 pub use sheet::{Carved, FallenPiece, SheetError, SheetSize, carved, on_sheet, plate};

@@ -7,10 +7,12 @@ use super::choice::Choice;
 use super::error::JobError;
 use super::laser::LaserOptions;
 use super::output::{Output, Target};
+use super::picture::PictureOptions;
 use super::plan::DEFAULT_MEMORY_LIMIT;
 use super::print::PrintOptions;
 use super::stage::Stage;
 use crate::domain::CurveSpec;
+use crate::fabricate::Material;
 use crate::fit::StitchMethod;
 use crate::pieces::CostWeights;
 use crate::planar::Tolerances;
@@ -45,6 +47,7 @@ pub struct BandBuilder {
     pub(super) weights: CostWeights,
     pub(super) thickness_mm: f64,
     pub(super) print: PrintOptions,
+    pub(super) picture: PictureOptions,
     pub(super) round_mm: Option<f64>,
     pub(super) stitch: StitchMethod,
     pub(super) bridge_mm: Option<f64>,
@@ -52,6 +55,8 @@ pub struct BandBuilder {
     pub(super) counted: bool,
     pub(super) memory_limit: usize,
     pub(super) laser: LaserOptions,
+    pub(super) enforce: bool,
+    pub(super) material: Option<Material>,
     chord_mm: f64,
     min_feature_mm: f64,
     min_gap_mm: f64,
@@ -76,6 +81,7 @@ impl BandBuilder {
             weights: CostWeights::default(),
             thickness_mm: DEFAULT_THICKNESS_MM,
             print: PrintOptions::default(),
+            picture: PictureOptions::default(),
             round_mm: None,
             stitch: StitchMethod::default(),
             bridge_mm: None,
@@ -83,6 +89,8 @@ impl BandBuilder {
             counted: false,
             memory_limit: DEFAULT_MEMORY_LIMIT,
             laser: LaserOptions::default(),
+            enforce: false,
+            material: None,
             chord_mm: Tolerances::DEFAULT_CHORD_MM,
             min_feature_mm: 0.0,
             min_gap_mm: 0.0,
@@ -168,6 +176,12 @@ impl BandBuilder {
         self
     }
 
+    /// What pictures show, and how large they are.
+    pub fn picture(mut self, picture: PictureOptions) -> Self {
+        self.picture = picture;
+        self
+    }
+
     /// The narrowest ink that the machine makes; 0 is not checked.
     pub fn min_feature_mm(mut self, min_feature_mm: f64) -> Self {
         self.min_feature_mm = min_feature_mm;
@@ -189,6 +203,19 @@ impl BandBuilder {
     /// The radius to which corners of the curve are rounded; without one, a corner is an error.
     pub fn round_mm(mut self, radius_mm: f64) -> Self {
         self.round_mm = Some(radius_mm);
+        self
+    }
+
+    /// Whether ink that is too thin is thickened to the minimum feature, and gaps that are too narrow are widened to the
+    /// minimum gap, before the part is checked.
+    pub fn enforce(mut self, enforce: bool) -> Self {
+        self.enforce = enforce;
+        self
+    }
+
+    /// The material, for the mass in the report.
+    pub fn material(mut self, material: Material) -> Self {
+        self.material = Some(material);
         self
     }
 
@@ -264,6 +291,13 @@ impl BandBuilder {
                 wanted: "ask for --holes 1 or more, or leave one of the two out".to_owned(),
             });
         }
+        if self.enforce && tolerances.min_feature_mm() == 0.0 && tolerances.min_gap_mm() == 0.0 {
+            return Err(JobError::Option {
+                option: "--enforce",
+                found: "there is no width to enforce".to_owned(),
+                wanted: "name a --process, or give --min-feature or --min-gap".to_owned(),
+            });
+        }
         let variety = (self.beta > 0.0).then(|| Variety::new(self.beta));
         let memory_limit = self.memory_limit;
         Ok(BandJob { options: self, tolerances, variety, memory_limit })
@@ -300,6 +334,7 @@ impl BandJob {
     /// As [`Output::check`].
     pub fn check_outputs(&self, outputs: &[Output], report_file: Option<&Target>) -> Result<(), JobError> {
         self.options.laser.check(outputs)?;
+        self.options.picture.check(outputs)?;
         let curve = match &self.options.along {
             CurveSpec::Path { file, .. } => Some(file.as_path()),
             CurveSpec::Line { .. } | CurveSpec::Circle { .. } => None,

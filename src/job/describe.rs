@@ -107,6 +107,10 @@ pub(super) fn describe(
         made: MadeReport {
             min_feature: None,
             min_gap: None,
+            narrow_places: Default::default(),
+            enforced: None,
+            cost: None,
+            bytes: Vec::new(),
             area_mm2: part.region.area_mm2(),
             page_mm: part.page_mm.to_array(),
             vertices: part.region.vertices(),

@@ -8,7 +8,7 @@ use thiserror::Error;
 use crate::domain::DomainError;
 use crate::exemplar::ExemplarError;
 use crate::export::ExportError;
-use crate::fabricate::{BridgeError, FabricateError, KerfError, SheetError};
+use crate::fabricate::{BridgeError, EnforceError, FabricateError, KerfError, SheetError};
 use crate::fit::FitError;
 use crate::pieces::CostWeightsError;
 use crate::planar::TolerancesError;
@@ -78,6 +78,11 @@ pub enum JobError {
     /// The part does not go on the plate.
     #[error("--sheet: {0}. Nothing was written")]
     Sheet(#[from] SheetError),
+    /// Minimum feature and gap cannot be enforced.
+    #[error(
+        "--enforce: {0}; a larger --width would do, or a smaller --min-feature or --min-gap. Nothing was written"
+    )]
+    Enforce(#[from] EnforceError),
     /// The solid cannot be made.
     #[error(transparent)]
     Fabricate(#[from] FabricateError),
@@ -143,6 +148,8 @@ impl JobError {
             Self::Slicing(_) => 2,
             Self::Bridge(BridgeError::Width { .. }) => 2,
             Self::Refused(_) | Self::SearchTooLarge { .. } | Self::Bridge(_) | Self::Kerf(_) => 3,
+            Self::Enforce(EnforceError::Width { .. }) => 2,
+            Self::Enforce(_) => 3,
             Self::Fabricate(
                 FabricateError::Thickness { .. }
                 | FabricateError::Chamfer { .. }

@@ -8,16 +8,18 @@ use serde::Serialize;
 use super::bridging::{self, BridgesReport};
 use super::error::JobError;
 use super::laser::{Cutting, LaserOptions, LaserReport};
+use super::making::{self, CostReport, EnforcedReport};
 use super::output::{Format, Output, Pending, Target, persist};
+use super::picture::{PictureOptions, Pictured};
 use super::print::{self, PrintOptions, check_mesh};
 use super::report::{InputReport, StageTime};
 use super::stage::{Clock, Stage};
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
 use crate::export::{self, SvgOptions};
-use crate::fabricate::{Bridge, Counts};
+use crate::fabricate::{Bridge, Counts, Material};
 use crate::planar::{GridPoint, Region, Tolerances};
 use crate::topology::{Goal, Wanted};
-use crate::verify::{self, Expected, MeshReport, Mismatch, SvgReport};
+use crate::verify::{self, Expected, MeshReport, Mismatch, NarrowPlaces, SvgReport};
 
 /// The part of the chord error that is for flattening the drawing; the rest is for fitting curves to it again.
 const READ_SHARE: f64 = 0.5;
@@ -37,6 +39,14 @@ pub struct ExtrudeReport {
     pub thickness_mm: f64,
     /// The bridges, when some were asked for; the counts are with them.
     pub bridges: Option<BridgesReport>,
+    /// What was thickened and widened; null when it was not asked for, or nothing was lacking.
+    pub enforced: Option<EnforcedReport>,
+    /// The ten narrowest places of ink and of gaps.
+    pub narrow_places: NarrowPlaces,
+    /// What costs money.
+    pub cost: CostReport,
+    /// Bytes of the files, in their order.
+    pub bytes: Vec<usize>,
     /// What was found in the solid, if one was written.
     pub solid: Option<MeshReport>,
     /// What was found in the SVG, if one was written.
@@ -62,25 +72,51 @@ pub struct ExtrudeBridges {
     pub holes: Option<Wanted>,
 }
 
-/// Extrudes the drawing in `file` to a solid `thickness_mm` high, with `bridges` laid before, and writes each output,
-/// verified: the solid as STL, 3MF or OBJ with the walls of `print`, the outline that it has as SVG on the drawing's own
-/// page, cut lines as `laser` says, and a picture of it with its bridges.
+/// How a drawing that is extruded is to be made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExtrudeMaking {
+    /// The height of the solid in millimetres.
+    pub thickness_mm: f64,
+    /// The tolerances; the counts of the outline must survive its widths.
+    pub tolerances: Tolerances,
+    /// Whether what is too thin is thickened and what is too narrow widened before.
+    pub enforce: bool,
+    /// The material, for the mass in the report.
+    pub material: Option<Material>,
+    /// The walls of the solid, and the printer.
+    pub print: PrintOptions,
+    /// The files of cut lines.
+    pub laser: LaserOptions,
+    /// The pictures.
+    pub picture: PictureOptions,
+}
+
+/// Extrudes the drawing in `file` to a solid as `making` says, with `bridges` laid before, and writes each output,
+/// verified: the solid as STL, 3MF or OBJ, the outline that it has as SVG on the drawing's own page, cut lines as DXF or SVG,
+/// and a picture.
 ///
 /// # Errors
 /// [`JobError`] for a drawing that cannot be represented, a thickness out of range, and a file that cannot be
 /// written or does not pass; then none of them exists under its name.
 pub fn extrude(
     file: &Path,
-    thickness_mm: f64,
-    print: &PrintOptions,
-    tolerances: &Tolerances,
+    making: &ExtrudeMaking,
     bridges: Option<ExtrudeBridges>,
-    laser: &LaserOptions,
     outputs: &[Output],
     progress: &mut dyn FnMut(Stage),
 ) -> Result<ExtrudeReport, JobError> {
     Output::check(outputs.iter().map(Output::target), &[file])?;
+    let &ExtrudeMaking {
+        thickness_mm,
+        ref tolerances,
+        enforce,
+        ref material,
+        ref print,
+        ref laser,
+        ref picture,
+    } = making;
     laser.check(outputs)?;
+    picture.check(outputs)?;
     print.profile(thickness_mm)?;
     let mut clock = Clock::new(progress);
     let options = ReadOptions {
@@ -96,6 +132,16 @@ pub fn extrude(
         None => None,
     };
     notes.extend(bridges.as_ref().map(|report| report.note(Counts::of(&region))));
+    let mut enforced = None;
+    if enforce
+        && let Some((mended, report)) =
+            clock.time(Stage::Enforce, || making::enforced(&region, tolerances))?
+    {
+        notes.push(report.note());
+        (region, enforced) = (mended, Some(report));
+    }
+    let narrow_places = clock.time(Stage::Verify, || making::worst_places(&region, tolerances));
+    check_widths(&region, tolerances, file, enforce)?;
     let expected = Expected {
         components: Some(region.components().into()),
         holes: Some(region.holes().into()),
@@ -113,10 +159,13 @@ pub fn extrude(
     };
     let (mut raised, mut solid, mut drawn) = (None, None, None);
     let mut pending = Vec::with_capacity(outputs.len());
+    let mut sizes = Vec::with_capacity(outputs.len());
     for output in outputs {
         let target = output.target();
         if let Some(cutting) = cutting.as_mut().filter(|_| laser.makes(output.format())) {
-            pending.push(cutting.write(output, &mut clock)?.0);
+            let (item, bytes) = cutting.write(output, &mut clock)?;
+            sizes.push(bytes.len());
+            pending.push(item);
             continue;
         }
         let item = match output.format() {
@@ -127,6 +176,7 @@ pub fn extrude(
                     let solid = print::raised(&mut raised, make)?;
                     print::mesh(format, solid, &print.document(file, None, Counts::of(&region)))
                 })?;
+                sizes.push(bytes.len());
                 let item = Pending::new(target, bytes)?;
                 solid = Some(clock.time(Stage::Verify, || check_mesh(output, &item, &expected))?);
                 item
@@ -134,15 +184,20 @@ pub fn extrude(
             Format::Svg => {
                 let chord_mm = tolerances.chord_mm();
                 let bytes = clock.time(Stage::Svg, || svg(&region, &drawing, file, chord_mm))?;
+                sizes.push(bytes.len());
                 let item = Pending::new(target, bytes)?;
                 drawn = Some(clock.time(Stage::Verify, || check_svg(target, &item, &expected, chord_mm))?);
                 item
             }
             Format::Png => {
                 let laid: &[Bridge] = bridges.as_ref().map_or(&[], |report| &report.bridges);
-                let marks = Marks { bridges: laid, ..Marks::default() };
-                let picture =
-                    clock.time(Stage::Png, || export::png(&region, &marks, export::DEFAULT_PIXELS))?;
+                let narrow_mm = narrow_places.places_mm();
+                let part = Pictured { region: &region, bridges: laid, seams_mm: &[], narrow_mm: &narrow_mm };
+                let picture = clock.time(Stage::Png, || {
+                    let make = || print.solid(&region, thickness_mm, tolerances.chord_mm(), &mut notes);
+                    picture.png(&part, || print::raised(&mut raised, make))
+                })?;
+                sizes.push(picture.len());
                 Pending::new(target, picture)?
             }
         };
@@ -156,6 +211,10 @@ pub fn extrude(
         holes: region.holes(),
         thickness_mm,
         bridges,
+        enforced,
+        narrow_places,
+        cost: CostReport::new(&region, thickness_mm, material.as_ref()),
+        bytes: sizes,
         solid,
         drawing: drawn,
         laser: cutting.map(|cutting| cutting.report),
@@ -163,6 +222,28 @@ pub fn extrude(
         notes,
         times: clock.times,
     })
+}
+
+/// The widths that were asked for are those of the outline, whatever files are made of it.
+fn check_widths(
+    region: &Region,
+    tolerances: &Tolerances,
+    file: &Path,
+    is_enforced: bool,
+) -> Result<(), JobError> {
+    let (feature_mm, gap_mm) = (tolerances.min_feature_mm(), tolerances.min_gap_mm());
+    // As finely as a written file is judged.
+    let chord_mm = 0.25 * tolerances.chord_mm();
+    let mismatch = if feature_mm > 0.0 && !verify::endures_erosion(region, 0.5 * feature_mm, chord_mm) {
+        let narrowest = verify::min_feature(region, feature_mm, chord_mm);
+        Mismatch::Feature { wanted_mm: feature_mm, narrowest }
+    } else if gap_mm > 0.0 && !verify::endures_dilation(region, 0.5 * gap_mm, chord_mm) {
+        Mismatch::Gap { wanted_mm: gap_mm, narrowest: verify::min_gap(region, gap_mm, chord_mm) }
+    } else {
+        return Ok(());
+    };
+    let remedy = if is_enforced { "" } else { "; --enforce would mend it" }.to_owned();
+    Err(JobError::Mismatch { file: file.to_owned(), mismatch, remedy })
 }
 
 fn generator() -> String {

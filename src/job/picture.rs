@@ -38,7 +38,9 @@ impl FromStr for Show {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let known = Self::ALL.into_iter().find(|show| show.name() == text);
-        known.ok_or_else(|| format!("{text} cannot be shown; use seams, thin or bridges, or several as seams,thin"))
+        known.ok_or_else(|| {
+            format!("{text} cannot be shown; use seams, thin or bridges, or several as seams,thin")
+        })
     }
 }
 
@@ -93,7 +95,7 @@ impl PictureOptions {
         Ok(())
     }
 
-    /// The picture of a part. Its solid is asked for only if it is looked at.
+    /// The shaded picture of a solid, if that is what is asked for, else of the flat part.
     pub(super) fn png<'s>(
         &self,
         part: &Pictured<'_>,

@@ -6,10 +6,11 @@ use super::bridging::BridgesReport;
 use super::certificate::Certificate;
 use super::json;
 use super::laser::LaserReport;
+use super::making::{CostReport, EnforcedReport};
 use super::ways::WayReport;
 use crate::domain::Squeeze;
 use crate::solver::Tally;
-use crate::verify::Narrowest;
+use crate::verify::{NarrowPlaces, Narrowest};
 
 /// An input file.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -189,6 +190,14 @@ pub struct MadeReport {
     pub min_feature: Option<Narrowest>,
     /// The narrowest gap, measured on the result.
     pub min_gap: Option<Narrowest>,
+    /// The ten narrowest places of ink and of gaps, measured on the result.
+    pub narrow_places: NarrowPlaces,
+    /// What was thickened and widened; null when it was not asked for, or nothing was lacking.
+    pub enforced: Option<EnforcedReport>,
+    /// What costs money.
+    pub cost: Option<CostReport>,
+    /// Bytes of the files, in their order.
+    pub bytes: Vec<usize>,
     /// Ink of the part in square millimetres.
     pub area_mm2: f64,
     /// Width and height of the page.

@@ -19,6 +19,8 @@ pub enum Stage {
     Map,
     /// Struts and slits, when they are needed.
     Bridge,
+    /// Thickening and widening, when they are asked for.
+    Enforce,
     /// The SVG file.
     Svg,
     /// Kerf, plate and the files of cut lines.
@@ -33,13 +35,14 @@ pub enum Stage {
 
 impl Stage {
     /// All stages.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Read,
         Self::Slice,
         Self::Solve,
         Self::Fit,
         Self::Map,
         Self::Bridge,
+        Self::Enforce,
         Self::Svg,
         Self::CutLines,
         Self::Stl,
@@ -56,6 +59,7 @@ impl Stage {
             Self::Fit => "fit",
             Self::Map => "map",
             Self::Bridge => "bridge",
+            Self::Enforce => "enforce",
             Self::Svg => "svg",
             Self::CutLines => "cut_lines",
             Self::Stl => "stl",

@@ -50,7 +50,7 @@ pub use cutlines::{CutFault, CutLayer, CutReport};
 pub use dxf::read_dxf;
 pub use endure::{endures_dilation, endures_erosion};
 pub use error::VerifyError;
-pub use narrowest::{Narrowest, Widths, min_feature, min_gap, widths};
+pub use narrowest::{NarrowPlaces, Narrowest, Widths, min_feature, min_gap, narrow_places, widths};
 pub use obj::read_obj;
 pub use shells::{MeshFault, MeshFaultKind, MeshReport, Shell};
 pub use stl::read_stl;
