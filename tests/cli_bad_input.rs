@@ -226,7 +226,7 @@ fn solids_that_no_printer_makes() {
     refuses("--chamfer 1.5mm", 2, &["the chamfer is 1.5 mm", "less than half of the thickness of 3 mm"]);
     refuses("--chamfer -1mm", 2, &["the chamfer is -1 mm"]);
     refuses("--taper 60", 2, &["the taper is 60 degrees", "less than 45"]);
-    refuses("--taper 40", 3, &["too narrow for walls that go in by 2.517 mm", "a taper of 33.", "does"]);
+    refuses("--taper 40", 3, &["too narrow for walls that go in by 2.517 mm", "a taper of 37.", "does"]);
     refuses("--max-triangles 3", 2, &["at most 3 are allowed", "no chord error does"]);
     refuses(
         "--bed 50x50mm",

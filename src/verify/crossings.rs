@@ -144,17 +144,21 @@ fn side(t: [DVec3; 3], p: DVec3) -> f64 {
     if t.iter().all(|v| v.z == t[0].z) {
         // Caps are level and walls upright: the predicate would go to its last resort for each point in their plane.
         let [a, b, c] = t.map(DVec3::truncate);
-        let up = turn(a, b, c);
-        return if up == 0.0 { 0.0 } else { up.signum() * (t[0].z - p.z) };
+        return sign(turn(a, b, c)) * (t[0].z - p.z);
     }
     for i in 0..3 {
         let (a, b, c) = (t[i], t[(i + 1) % 3], t[(i + 2) % 3]);
         if a.truncate() == b.truncate() {
-            return turn(a.truncate(), c.truncate(), p.truncate()) * (a.z - b.z).signum();
+            return turn(a.truncate(), c.truncate(), p.truncate()) * sign(a.z - b.z);
         }
     }
     let coord = |v: DVec3| Coord3D { x: v.x, y: v.y, z: v.z };
     orient3d(coord(t[0]), coord(t[1]), coord(t[2]), coord(p))
+}
+
+/// −1, 0 or 1; a corner given twice has no plane, and no side of it.
+fn sign(x: f64) -> f64 {
+    if x == 0.0 { 0.0 } else { x.signum() }
 }
 
 fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
