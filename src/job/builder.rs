@@ -6,6 +6,7 @@ use super::band::Band;
 use super::choice::Choice;
 use super::error::JobError;
 use super::laser::LaserOptions;
+use super::making;
 use super::output::{Output, Target};
 use super::picture::PictureOptions;
 use super::plan::DEFAULT_MEMORY_LIMIT;
@@ -292,11 +293,7 @@ impl BandBuilder {
             });
         }
         if self.enforce && tolerances.min_feature_mm() == 0.0 && tolerances.min_gap_mm() == 0.0 {
-            return Err(JobError::Option {
-                option: "--enforce",
-                found: "there is no width to enforce".to_owned(),
-                wanted: "name a --process, or give --min-feature or --min-gap".to_owned(),
-            });
+            return Err(making::no_width());
         }
         let variety = (self.beta > 0.0).then(|| Variety::new(self.beta));
         let memory_limit = self.memory_limit;

@@ -91,6 +91,18 @@ pub struct ExtrudeMaking {
     pub picture: PictureOptions,
 }
 
+impl ExtrudeMaking {
+    fn check(&self, outputs: &[Output]) -> Result<(), JobError> {
+        if self.enforce && self.tolerances.min_feature_mm() == 0.0 && self.tolerances.min_gap_mm() == 0.0 {
+            return Err(making::no_width());
+        }
+        self.laser.check(outputs)?;
+        self.picture.check(outputs)?;
+        self.print.profile(self.thickness_mm)?;
+        Ok(())
+    }
+}
+
 /// Extrudes the drawing in `file` to a solid as `making` says, with `bridges` laid before, and writes each output,
 /// verified: the solid as STL, 3MF or OBJ, the outline that it has as SVG on the drawing's own page, cut lines as DXF or SVG,
 /// and a picture.
@@ -106,18 +118,9 @@ pub fn extrude(
     progress: &mut dyn FnMut(Stage),
 ) -> Result<ExtrudeReport, JobError> {
     Output::check(outputs.iter().map(Output::target), &[file])?;
-    let &ExtrudeMaking {
-        thickness_mm,
-        ref tolerances,
-        enforce,
-        ref material,
-        ref print,
-        ref laser,
-        ref picture,
-    } = making;
-    laser.check(outputs)?;
-    picture.check(outputs)?;
-    print.profile(thickness_mm)?;
+    making.check(outputs)?;
+    let ExtrudeMaking { tolerances, material, print, laser, picture, .. } = making;
+    let (thickness_mm, enforce) = (making.thickness_mm, making.enforce);
     let mut clock = Clock::new(progress);
     let options = ReadOptions {
         chord_mm: tolerances.chord_mm() * READ_SHARE,

@@ -59,6 +59,15 @@ pub(super) fn enforced(
     Ok(Some((enforced.region, report)))
 }
 
+/// That there is nothing to enforce.
+pub(super) fn no_width() -> JobError {
+    JobError::Option {
+        option: "--enforce",
+        found: "there is no width to enforce".to_owned(),
+        wanted: "name a --process, or give --min-feature or --min-gap".to_owned(),
+    }
+}
+
 impl EnforcedReport {
     /// A line about it.
     pub(super) fn note(&self) -> String {
