@@ -162,7 +162,7 @@ fn what_cannot_be_is_refused_by_its_name() {
         ("vine.svg --size 40x30mm --components 0", 2, "--components"),
         ("missing.svg --size 40x30mm", 2, "missing.svg"),
         // Separate leaves do not hang together however they are joined.
-        ("leaves.svg --size 60x40mm --components 1", 3, "--bridge 1mm joins what stays apart"),
+        ("leaves.svg --size 60x40mm --components 1", 3, "--bridge 1mm to join what stays apart"),
         // Nothing is told of components, for which nobody asked.
         ("wave.svg --size 20x15mm --width 5mm --holes 300", 3, "no sequence along 15.0 mm has 300 hole(s)"),
         // No strand leads on from one copy to the next.

@@ -193,17 +193,18 @@ fn check_tally(tally: Tally, number: usize, is_counted: bool) -> Result<(), Test
 
 /// That the number of sequences, the cheapest ones, and what is drawn at random are those of the enumeration.
 fn check_all(problem: &Problem<'_>, goal: Goal, admitted: Vec<&Made>) -> Result<(), TestCaseError> {
-    let mut census =
-        Census::new(problem, goal, f64::INFINITY, usize::MAX).expect("small cases have a census");
-    prop_assert_eq!(census.ln_total().exp().round() as usize, admitted.len(), "{:?}", goal);
+    // States and drifts are counted whatever the length, so that even a small case may have too many of them.
+    if let Some(mut census) = Census::new(problem, goal, f64::INFINITY, usize::MAX) {
+        prop_assert_eq!(census.ln_total().exp().round() as usize, admitted.len(), "{:?}", goal);
+        let drawn = census.draw(&mut Random::new(7));
+        prop_assert_eq!(drawn.is_some(), !admitted.is_empty());
+        if let Some(drawn) = drawn {
+            prop_assert!(admitted.iter().any(|m| m.sequence == drawn), "{:?} drew {:?}", goal, drawn);
+        }
+    }
     let known = admitted.first().map(|made| &made.sequence[..]);
     for effort in EFFORTS {
         check_tally(tally(problem, goal, known, effort), admitted.len(), effort == usize::MAX / 2)?;
-    }
-    let drawn = census.draw(&mut Random::new(7));
-    prop_assert_eq!(drawn.is_some(), !admitted.is_empty());
-    if let Some(drawn) = drawn {
-        prop_assert!(admitted.iter().any(|m| m.sequence == drawn), "{:?} drew {:?}", goal, drawn);
     }
     // Of the openings of one ring all cost the same.
     let rings: BTreeSet<(u64, Vec<usize>)> =

@@ -110,6 +110,15 @@ pub(super) fn why(catalogue: &Catalogue, options: &PlanOptions, error: Unsolved)
     PlanError::Refused { refusal: solver::explain(&problem, options.goal, longest), bin_mm }
 }
 
+/// Whether there is no sequence for any ε, as far as that is found out soon.
+pub(super) fn is_impossible(catalogue: &Catalogue, options: &PlanOptions) -> bool {
+    let bin_mm = bin_mm(catalogue, options.length_mm);
+    let [.., last] = EPSILONS;
+    window(options.length_mm, last, bin_mm).is_some_and(|window| {
+        solver::is_impossible(&Problem { window, ..problem(catalogue, options, bin_mm) }, options.goal)
+    })
+}
+
 /// The best sequence for the least ε with which there is one.
 pub(super) fn first_fit(catalogue: &Catalogue, options: &PlanOptions) -> Result<Plan, Unsolved> {
     let bin_mm = bin_mm(catalogue, options.length_mm);

@@ -4,7 +4,7 @@ use super::builder::BandJob;
 use super::choice::{Choice, Chosen, chosen};
 use super::cut::Cut;
 use super::error::JobError;
-use super::plan::{Plan, PlanError, PlanOptions, first_fit, why};
+use super::plan::{Plan, PlanError, PlanOptions, first_fit, is_impossible, why};
 use super::refusal;
 use super::stage::{Clock, Stage};
 use crate::domain::BandMap;
@@ -22,6 +22,24 @@ pub(super) fn plan_run(
     let chosen = strictly(&options, Choice::Cheapest, false, cut, clock);
     let mut chosen = chosen.map_err(|error| refused(error, cut, &options, ""))?;
     Ok(with_topology(cut, &options, chosen.plans.swap_remove(0)))
+}
+
+/// As [`plan_run`], for one strip of many: no reason where there is no sequence; `None` when that is shown.
+///
+/// # Errors
+/// [`JobError::SearchTooLarge`] when the search was given up.
+pub(super) fn plan_strip(
+    job: &BandJob,
+    cut: &mut Cut,
+    map: &BandMap,
+    clock: &mut Clock<'_>,
+) -> Result<Option<(Plan, Topology)>, JobError> {
+    let options = plan_options(job, cut, map);
+    match with_any_successors(&options, Choice::Cheapest, false, cut, clock) {
+        Ok(mut chosen) => Ok(Some(with_topology(cut, &options, chosen.plans.swap_remove(0)))),
+        Err(Unsolved::Infeasible) => Ok(None),
+        Err(Unsolved::TooLarge { labels }) => Err(JobError::SearchTooLarge { labels }),
+    }
 }
 
 /// As [`plan_run`], for one way of many: with the successors that are in the table only, and no reason where there is
@@ -58,11 +76,26 @@ pub(super) fn strictly(
     cut: &mut Cut,
     clock: &mut Clock<'_>,
 ) -> Result<Chosen, PlanError> {
-    let mut found = clock.time(Stage::Solve, || chosen(&cut.catalogue, options, choice, counted));
-    if found == Err(Unsolved::Infeasible) && cut.admit_all_successors() {
-        found = clock.time(Stage::Solve, || chosen(&cut.catalogue, options, choice, counted));
-    }
+    let found = with_any_successors(options, choice, counted, cut, clock);
     found.map_err(|error| clock.time(Stage::Solve, || why(&cut.catalogue, options, error)))
+}
+
+/// The same, without a reason where there is none.
+fn with_any_successors(
+    options: &PlanOptions,
+    choice: Choice,
+    counted: bool,
+    cut: &mut Cut,
+    clock: &mut Clock<'_>,
+) -> Result<Chosen, Unsolved> {
+    let found = clock.time(Stage::Solve, || chosen(&cut.catalogue, options, choice, counted));
+    if found != Err(Unsolved::Infeasible) || !cut.admit_all_successors() {
+        return found;
+    }
+    clock.time(Stage::Solve, || match is_impossible(&cut.catalogue, options) {
+        true => Err(Unsolved::Infeasible),
+        false => chosen(&cut.catalogue, options, choice, counted),
+    })
 }
 
 pub(super) fn with_topology(cut: &Cut, options: &PlanOptions, plan: Plan) -> (Plan, Topology) {

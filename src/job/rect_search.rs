@@ -205,12 +205,14 @@ impl Search<'_, '_> {
             {
                 return None;
             }
-            let strip = match strips.get(wish, self.clock) {
+            // What no strip can be at all is nobody's wish; the rest is only tried, and costs nothing but that.
+            let is_told = self.error.as_ref().is_some_and(|((is_own, ..), _)| *is_own);
+            let explained = wish.goal.is_free() && !is_told;
+            let strip = match strips.get(wish, explained, self.clock) {
                 Ok(Some(strip)) => strip,
                 Ok(None) => continue,
                 Err(error) => {
                     self.attempts.push(Attempt::first(&strips.job(wish), error.to_string()));
-                    // What no strip can be at all is nobody's wish; the rest is only tried.
                     self.note((wish.goal.is_free(), false, matches!(error, JobError::Refused(_))), error);
                     continue;
                 }
@@ -280,17 +282,17 @@ impl Search<'_, '_> {
         let can_bridge = options.bridge_mm.is_none() && !self.job.tile;
         let remedy = match (self.unbridged, options.goal.components, options.goal.holes) {
             (Some(why), ..) => format!("; and with bridges, {why}"),
-            (None, Some(_), _) if can_bridge => ", and --bridge 1mm joins what stays apart".to_owned(),
-            (None, None, Some(_)) if can_bridge => ", and --bridge 1mm opens and closes holes".to_owned(),
+            (None, Some(_), _) if can_bridge => ", or --bridge 1mm to join what stays apart".to_owned(),
+            (None, None, Some(_)) if can_bridge => ", or --bridge 1mm to open and close holes".to_owned(),
             _ => String::new(),
         };
         match self.error {
             Some(((_, true, _), JobError::Refused(why))) => JobError::Refused(format!(
-                "no rectangle of {}: {ways} way(s) of making it were tried; of the first, whose rows are the pieces, {why}; another --width may help{remedy}",
+                "no rectangle of {} was found in {ways} way(s); in the first, {why}; try another --width{remedy}",
                 self.job.size
             )),
             Some(((_, false, _), JobError::Refused(why))) => JobError::Refused(format!(
-                "no rectangle of {}: no strip as long as it is wide: {why}",
+                "no rectangle of {} was found in {ways} way(s), no strip as long as it is wide: {why}; try another --width{remedy}",
                 self.job.size
             )),
             Some((_, error)) => error,

@@ -8,7 +8,7 @@ use super::band::Band;
 use super::builder::BandJob;
 use super::cut::{Cut, read_exemplar, slice_region};
 use super::error::JobError;
-use super::planning::plan_run;
+use super::planning::{plan_run, plan_strip};
 use super::rect_builder::RectJob;
 use super::rect_tile::{join_own_copies, opened};
 use super::stage::{Clock, Stage};
@@ -118,18 +118,24 @@ impl Strips {
         job
     }
 
-    /// The strip that was wished for; `None` if there is none, or if it is the same as one of another wish.
+    /// The strip that was wished for; `None` if there is none, or if it is the same as one of another wish. The reason
+    /// for a refusal is looked for where it is to be `explained`.
     ///
     /// # Errors
     /// [`JobError`] when it cannot be made, the first time that it is wished for.
-    pub(super) fn get(&mut self, wish: Wish, clock: &mut Clock<'_>) -> Result<Option<Strip>, JobError> {
+    pub(super) fn get(
+        &mut self,
+        wish: Wish,
+        explained: bool,
+        clock: &mut Clock<'_>,
+    ) -> Result<Option<Strip>, JobError> {
         if let Some((_, strip)) = self.known.iter().find(|(known, _)| *known == wish) {
             return Ok(strip.clone());
         }
         if self.refused.iter().any(|refused| wish.is_within(refused)) {
             return Ok(None);
         }
-        match self.made(wish, clock) {
+        match self.made(wish, explained, clock) {
             Ok(strip) => {
                 self.known.push((wish, strip.clone()));
                 Ok(strip)
@@ -141,7 +147,12 @@ impl Strips {
         }
     }
 
-    fn made(&mut self, wish: Wish, clock: &mut Clock<'_>) -> Result<Option<Strip>, JobError> {
+    fn made(
+        &mut self,
+        wish: Wish,
+        explained: bool,
+        clock: &mut Clock<'_>,
+    ) -> Result<Option<Strip>, JobError> {
         let mut job = self.job(wish);
         let mut slice = |job: &BandJob, region: &Region| {
             clock.time(Stage::Slice, || slice_region(job, self.exemplar.clone(), region))
@@ -157,7 +168,15 @@ impl Strips {
             join_own_copies(&mut cut, false);
         }
         let map = flat_map(self.map_width_mm, cut.height_mm)?;
-        let (plan, planned) = plan_run(&job, &mut cut, &map, clock).inspect_err(|error| {
+        let planned = match explained {
+            true => plan_run(&job, &mut cut, &map, clock),
+            false => plan_strip(&job, &mut cut, &map, clock).and_then(|found| {
+                found.ok_or_else(|| {
+                    JobError::Refused("none hangs together with strands that fit at every join".to_owned())
+                })
+            }),
+        };
+        let (plan, planned) = planned.inspect_err(|error| {
             // Whatever else is wrong depends on the sequence, and another seed gives another one.
             if matches!(error, JobError::Refused(_)) {
                 self.refused.push(wish);

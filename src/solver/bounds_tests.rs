@@ -9,9 +9,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use proptest::prelude::*;
 
 use super::classes::{CLASS_SIZES, Classes};
+use super::coarse::bounds;
 use super::connected::Connected;
 use super::connectivity::{Connectivity, Counts, NODE_LIMIT};
-use super::counts::{Caps, counts, ranges};
+use super::counts::{Caps, Ranges, counts, ranges};
 use super::estimates::{Estimates, Level};
 use super::family::{Family, families, scopes};
 use super::graph::{Scope, of_pieces};
@@ -306,6 +307,15 @@ fn check_counts(problem: &Problem<'_>, runs: &Runs, scope: &Scope) -> Result<(),
     prop_assert!(found.is_some() || met.is_empty());
     prop_assert!(found.is_none() || !is_open || !met.is_empty());
     let ends = |of: fn(&Topology) -> u32| (met.iter().map(of).min(), met.iter().map(of).max());
+    let coarse = bounds(problem, scope);
+    prop_assert!(coarse.is_some() || met.is_empty());
+    if let Some(Ranges { least, most }) = coarse {
+        let is_within = |t: &Topology| {
+            (least.components..=most.components).contains(&t.components)
+                && (least.holes..=most.holes).contains(&t.holes)
+        };
+        prop_assert!(met.iter().all(is_within), "{least:?} to {most:?} by pieces alone: {met:?}");
+    }
     if let (Some(range), (Some(few), Some(many)), (Some(low), Some(high))) =
         (found, ends(|t| t.components), ends(|t| t.holes))
     {
@@ -328,7 +338,8 @@ fn check_counts(problem: &Problem<'_>, runs: &Runs, scope: &Scope) -> Result<(),
     for (components, holes) in
         [(None, None), (Some(4), None), (None, Some(150)), (Some(4), Some(150)), (Some(90), Some(3))]
     {
-        let set = counts(problem, &graph, Caps { components, holes }).expect("the problem is small");
+        let set =
+            counts(problem, &graph, Caps { components, holes }, usize::MAX).expect("the problem is small");
         let read =
             |counts: Counts| (components.map_or(0, |_| counts.components), holes.map_or(0, |_| counts.holes));
         let had: BTreeSet<(u32, u32)> =

@@ -1,8 +1,8 @@
 //! The cheapest run: walks along the length with growing thresholds.
 //!
 //! A [`Walk`] with a threshold at or above the optimum finds it, and looks only at runs whose estimate is within
-//! the threshold. So the threshold begins at the least estimate there is and grows, each time to where about
-//! twice as many runs come in, until a walk finds a run: then everything cheaper was looked at, and it is the
+//! the threshold. So the threshold begins at the least estimate there is and grows, each time to where some three
+//! times as many runs come in, until a walk finds a run: then everything cheaper was looked at, and it is the
 //! optimum. A step that lets in far too many is taken back. The first walks know only the pieces; the more work the
 //! walks turn out to take, the dearer the estimates that are made for them ([`Level`]).
 //!
@@ -30,6 +30,9 @@ const SHORT: [usize; 2] = [300, 150_000];
 const ADDITIONS_PER_LABEL: usize = 200;
 /// A pass that knows the topology takes about as many times as long as one over the pieces alone.
 const TOPOLOGY: usize = 8;
+/// Where runs leave the band, prices are made after so small a part of that effort: the walks that know the drift and no
+/// price of it look at most runs in vain.
+const PRICES: usize = 8;
 /// Effort after which the dearest of all is made, the pass over all pairs of piece and state with the drift.
 const LONG: usize = 1_500_000;
 /// A threshold is too high when it lets in so many times the effort of the last one.
@@ -38,8 +41,11 @@ const LEAP: usize = 24;
 const STEP_BACK: Cost = 6;
 /// Runs that a threshold lets in at least of those that the last one left out.
 const FEW: usize = 8;
-/// Labels for each run more that a threshold lets in. Each is going to be extended to a few of its own.
+/// Labels for each run more that a threshold lets in, at most. Each is going to be extended to a few of its own: to so
+/// few that the effort did not grow as it should, and there are fewer labels for each from then on.
 const LABELS_PER_RUN: usize = 16;
+/// By how much the effort should grow from one threshold to the next, at least and at most.
+const GROWTH: [usize; 2] = [3, 12];
 /// Runs of each length that the beam keeps; widened until a run is found.
 const BEAMS: [usize; 3] = [300, 3_000, 30_000];
 /// Runs of each length that it keeps at least.
@@ -138,6 +144,7 @@ impl<'p> Cheapest<'p> {
     fn solve(mut self, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
         // Walks in a row that were too long.
         let mut leaps = 0;
+        let mut labels_per_run = LABELS_PER_RUN;
         while self.threshold != NEVER {
             let most = self.effort_limit(automaton);
             let patience = self.patience().map_or(most, |effort| most.min(self.effort_before + effort));
@@ -164,7 +171,7 @@ impl<'p> Cheapest<'p> {
             }
             let effort = self.effort - before.effort;
             let has_grown = 2 * effort > 3 * self.last;
-            self.last = effort;
+            let previous = std::mem::replace(&mut self.last, effort);
             leaps = 0;
             let best = self.best.as_ref().map_or(NEVER, |&(_, _, total)| total);
             if !self.by_drift && round.drifted_at < best && round.drifted_at <= self.threshold {
@@ -182,7 +189,13 @@ impl<'p> Cheapest<'p> {
                 break;
             }
             self.floor = self.floor.max(round.beyond.least());
-            let next = round.beyond.next((self.last / LABELS_PER_RUN).max(FEW));
+            // How many labels come of a run differs as much as joins and estimates do.
+            if effort < GROWTH[0] * previous {
+                labels_per_run = (labels_per_run / 2).max(1);
+            } else if effort > GROWTH[1] * previous {
+                labels_per_run = (labels_per_run * 2).min(LABELS_PER_RUN);
+            }
+            let next = round.beyond.next((self.last / labels_per_run).max(FEW));
             // Where many estimates lie close together, steps grow all the same.
             let step = self.threshold.saturating_sub(before.floor).saturating_mul(2);
             let least = if has_grown { 0 } else { self.floor.saturating_add(step).min(NEVER - 1) };
@@ -204,7 +217,8 @@ impl<'p> Cheapest<'p> {
     /// Effort after which the estimates of the next level are made; `None` when there is none.
     fn patience(&self) -> Option<usize> {
         match (self.level, self.by_drift) {
-            (Level::Pieces | Level::Topology, _) | (Level::Fine, true) => Some(self.short),
+            (Level::Pieces | Level::Topology, false) => Some(self.short),
+            (Level::Pieces | Level::Topology | Level::Fine, true) => Some(self.short / PRICES),
             (Level::Prices, _) => Some(LONG),
             (Level::Fine, false) | (Level::Drift, _) => None,
         }

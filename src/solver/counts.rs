@@ -39,20 +39,38 @@ struct Frame {
     words: usize,
 }
 
-/// Word operations at which a pass is not begun: about a second.
-const WORK_LIMIT: usize = 1_000_000_000;
-/// Joins at which a pass of ranges is not begun: about half a second.
-const RANGES_WORK_LIMIT: usize = 100_000_000;
+/// Word operations at which a pass is not begun, with little memory and with much: up to about a second.
+const WORK_LIMITS: [usize; 2] = [2_000_000, 1_000_000_000];
+/// Joins at which a pass of ranges is not begun: up to about half a second.
+const RANGES_WORK_LIMITS: [usize; 2] = [1_000_000, 100_000_000];
 
-/// The counts of all runs in the window; `None` when the pass would be too long.
-pub(super) fn counts(problem: &Problem<'_>, graph: &Connectivity, caps: Caps) -> Option<CountSet> {
+/// Word operations at which a pass is not begun. A search that may take little memory is one of many, and has no
+/// more time for this.
+pub(super) fn work_limit(problem: &Problem<'_>) -> usize {
+    let [least, most] = WORK_LIMITS;
+    problem.share(most).max(least)
+}
+
+/// The word operations that the pass for these caps takes.
+pub(super) fn work(problem: &Problem<'_>, graph: &Connectivity, caps: Caps) -> usize {
+    let frame = Frame::new(caps);
+    let longest = *problem.window.end() as usize;
+    longest.saturating_mul(graph.joins()).saturating_mul(frame.rows).saturating_mul(frame.words)
+}
+
+/// The counts of all runs in the window; `None` when the pass would take more than `most` word operations.
+pub(super) fn counts(
+    problem: &Problem<'_>,
+    graph: &Connectivity,
+    caps: Caps,
+    most: usize,
+) -> Option<CountSet> {
+    if work(problem, graph, caps) > most {
+        return None;
+    }
     let frame = Frame::new(caps);
     let longest = *problem.window.end() as usize;
     let size = frame.rows * frame.words;
-    let work = longest.saturating_mul(graph.joins()).saturating_mul(size);
-    if work > WORK_LIMIT {
-        return None;
-    }
     let n = graph.len();
     let layers = problem.widths.iter().max().map_or(1, |&w| w as usize) + 1;
     let mut sets = vec![0u64; layers * n * size];
@@ -92,15 +110,18 @@ pub(super) fn counts(problem: &Problem<'_>, graph: &Connectivity, caps: Caps) ->
     Some(CountSet { frame, bits: found })
 }
 
+/// Whether a pass of [`ranges`] is worth its time.
+pub(super) fn is_soon_ranged(problem: &Problem<'_>, graph: &Connectivity) -> bool {
+    let [least, most] = RANGES_WORK_LIMITS;
+    let longest = *problem.window.end() as usize;
+    longest.saturating_mul(graph.joins()) <= problem.share(most).max(least)
+}
+
 /// From the fewest to the most components and holes of the runs in the window; `None` when there is no run. Both
-/// ends of a range can be had, each by itself and as far as the graph knows. All there are when the pass would be
-/// too long.
+/// ends of a range can be had, each by itself and as far as the graph knows.
 pub(super) fn ranges(problem: &Problem<'_>, graph: &Connectivity) -> Option<Ranges> {
     let longest = *problem.window.end() as usize;
     let n = graph.len();
-    if longest.saturating_mul(graph.joins()) > RANGES_WORK_LIMIT {
-        return Some(Ranges::ALL);
-    }
     let layers = problem.widths.iter().max().map_or(1, |&w| w as usize) + 1;
     let mut met: Vec<Option<Ranges>> = vec![None; layers * n];
     for &(node, closes) in graph.starts() {
@@ -133,10 +154,6 @@ pub(super) struct Ranges {
 }
 
 impl Ranges {
-    const ALL: Self = Self {
-        least: Counts { components: 0, holes: 0 },
-        most: Counts { components: u32::MAX, holes: u32::MAX },
-    };
     const EMPTY: Self =
         Self { least: Counts { components: 0, holes: 0 }, most: Counts { components: 0, holes: 0 } };
 

@@ -2,16 +2,38 @@
 //!
 //! Of the states that a piece can be reached in, only those that no other dominates are followed: for one
 //! component the coarsest, for no holes the finest. Most goals that an exemplar cannot meet fall here, without
-//! a look at a single length. Goals without dominance have the graph of [`super::counts`].
+//! a look at a single length. Goals without dominance have the graph of [`super::counts`], and where that is too large
+//! what the pieces alone tell ([`super::coarse`]).
 
+use super::coarse::ranges_or_bounds;
 use super::connectivity::{Connectivity, Counts, NODE_LIMIT};
-use super::counts::{Caps, Ranges, counts, ranges};
+use super::counts::{Caps, Ranges, counts, work_limit};
+use super::family::scopes;
 use super::graph::Scope;
 use super::problem::Problem;
 use crate::topology::{Automaton, Dominance, Goal, StateId, Wanted};
 
 /// States that are compared before the question is left open.
 const PATIENCE: usize = 4_000_000;
+
+/// Word operations of all passes together that tell whether a goal [`is_impossible`]: about a tenth of a second.
+const SOON: usize = 100_000_000;
+/// The memory by which the other passes are kept as short.
+const SOON_BYTES: usize = 64 << 20;
+
+/// Whether no sequence meets `goal`, as far as that is found out soon. `false` otherwise: then [`super::solve`] tells.
+pub fn is_impossible(problem: &Problem<'_>, goal: Goal) -> bool {
+    let problem = &Problem { memory_limit: problem.memory_limit.min(SOON_BYTES), ..problem.clone() };
+    let scopes = scopes(problem, goal.closed_pattern);
+    let (nodes, work) = (NODE_LIMIT / scopes.len().max(1), SOON / scopes.len().max(1));
+    let mut automaton = Automaton::new(problem.descriptors, goal, problem.shape);
+    scopes.iter().all(|scope| {
+        is_never(problem, &mut automaton, scope) || {
+            let graph = Connectivity::new(problem, goal, scope, nodes);
+            is_out(problem, goal, scope, graph.as_ref(), work)
+        }
+    })
+}
 
 /// Whether no run within `scope` of any length meets the automaton's goal. `false` also when that was not found
 /// out.
@@ -53,19 +75,32 @@ pub(super) fn is_out_of_range(
     known: Option<&Connectivity>,
 ) -> bool {
     let made = known.is_none().then(|| Connectivity::new(problem, goal, scope, NODE_LIMIT)).flatten();
-    let Some(graph) = known.or(made.as_ref()) else { return false };
-    let Some(Ranges { least, most }) = ranges(problem, graph) else { return true };
+    is_out(problem, goal, scope, known.or(made.as_ref()), work_limit(problem))
+}
+
+/// The same, by passes over the graph of at most so many word operations; without one, by the pieces alone.
+fn is_out(
+    problem: &Problem<'_>,
+    goal: Goal,
+    scope: &Scope,
+    graph: Option<&Connectivity>,
+    work: usize,
+) -> bool {
+    if ranges_or_bounds(problem, scope, graph).is_none_or(|ranges| is_outside(goal, ranges)) {
+        return true;
+    }
+    let set = graph.and_then(|graph| counts(problem, graph, Caps::of(goal), work));
+    let Some(set) = set else { return false };
+    let all = |wanted: Option<Wanted>| wanted.map_or(0..=0, |w| w.least()..=w.most());
+    !all(goal.components).any(|components| all(goal.holes).any(|holes| set.has(Counts { components, holes })))
+}
+
+/// Whether a count that is wanted lies beyond its range.
+fn is_outside(goal: Goal, Ranges { least, most }: Ranges) -> bool {
     let is_off = |wanted: Option<Wanted>, least, most| {
         wanted.is_some_and(|wanted| wanted.most() < least || wanted.least() > most)
     };
-    if is_off(goal.components, least.components, most.components)
-        || is_off(goal.holes, least.holes, most.holes)
-    {
-        return true;
-    }
-    let Some(set) = counts(problem, graph, Caps::of(goal)) else { return false };
-    let all = |wanted: Option<Wanted>| wanted.map_or(0..=0, |w| w.least()..=w.most());
-    !all(goal.components).any(|components| all(goal.holes).any(|holes| set.has(Counts { components, holes })))
+    is_off(goal.components, least.components, most.components) || is_off(goal.holes, least.holes, most.holes)
 }
 
 /// Takes up a state unless another dominates it; those that it dominates go.

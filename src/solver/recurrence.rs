@@ -8,9 +8,7 @@
 //! Rows are compared by a hash of what they have above their least entry. Excluded: the proof, which is the
 //! comparison of the rows themselves.
 
-use std::hash::Hasher;
-
-use rustc_hash::{FxHashMap, FxHasher};
+use rustc_hash::{FxBuildHasher, FxHashMap};
 
 use super::table::Weigh;
 
@@ -24,12 +22,27 @@ pub(super) struct Recurrence {
     period: usize,
     met: usize,
     more: i64,
+    /// By entry of a row, what its cost is multiplied by in the hash: so no product waits for another.
+    factors: Vec<u64>,
 }
 
+/// Rows for which there is room at first.
+const ROWS: usize = 1 << 10;
+
 impl Recurrence {
-    /// No rows yet.
-    pub(super) fn new() -> Self {
-        Self { last: FxHashMap::default(), rows: Vec::new(), period: 0, met: 0, more: 0 }
+    /// No rows yet, of which there are `longest` at most, of so many `entries` each.
+    pub(super) fn new(entries: usize, longest: usize) -> Self {
+        /// The golden ratio, whose powers in whole numbers have nothing in common with sums of costs.
+        const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
+        let next = |factor: &u64| Some(factor.wrapping_mul(GOLDEN));
+        Self {
+            last: FxHashMap::with_capacity_and_hasher(longest.min(ROWS), FxBuildHasher),
+            rows: Vec::with_capacity(longest.min(ROWS)),
+            period: 0,
+            met: 0,
+            more: 0,
+            factors: std::iter::successors(Some(GOLDEN), next).take(entries).collect(),
+        }
     }
 
     /// Takes up the next row. The period, once so many `wanted` rows in a row have one.
@@ -37,11 +50,10 @@ impl Recurrence {
         let number = self.rows.len();
         let least = row.iter().filter_map(|weight| weight.as_cost()).min();
         let least = least.or(self.rows.last().map(|&(_, least)| least)).unwrap_or(0);
-        let mut hasher = FxHasher::default();
-        for weight in row {
-            hasher.write_i64(weight.as_cost().map_or(-1, |cost| cost - least));
-        }
-        let hash = hasher.finish();
+        let above = |weight: &W| weight.as_cost().map_or(-1, |cost| cost - least) as u64;
+        let products =
+            row.iter().zip(&self.factors).map(|(weight, factor)| above(weight).wrapping_mul(*factor));
+        let hash = products.fold(0, u64::wrapping_add);
         self.rows.push((hash, least));
         let last = self.last.insert(hash, number);
         let goes_on = self.period > 0

@@ -100,9 +100,7 @@ impl Weigh for i64 {
 pub(super) struct Table<W> {
     graph: Arc<Graph>,
     /// By edge.
-    weights: Vec<W>,
-    /// By edge, how far before a row the node lies that it leads to.
-    back: Vec<u32>,
+    joins: Vec<Join<W>>,
     /// Whether some joins have to be completed in two ways at once.
     has_pairs: bool,
     /// By node.
@@ -120,6 +118,14 @@ pub(super) struct Table<W> {
     tail: Option<Tail<W>>,
     /// Whether patience ended before the rows recurred.
     is_cut_short: bool,
+}
+
+/// What a pass reads of an edge.
+#[derive(Clone, Copy)]
+struct Join<W> {
+    weight: W,
+    /// How far before a row the node lies that it leads to.
+    back: u32,
 }
 
 /// Rows that recur.
@@ -158,17 +164,15 @@ impl<W: Weigh> Table<W> {
         let n = graph.len();
         let affordable = (budget / (n.max(1) * size_of::<W>())).saturating_sub(widest);
         let block = affordable.max((layers * widest).isqrt()).max(widest).min(layers.max(widest));
-        let weights = graph.all_edges().iter().map(|e| weigh(e.toll())).collect();
-        let back = |e: &Edge| e.width * n as u32 - e.to;
-        let back = graph.all_edges().iter().map(back).collect();
+        let join = |e: &Edge| Join { weight: weigh(e.toll()), back: e.width * n as u32 - e.to };
+        let joins = graph.all_edges().iter().map(join).collect();
         let has_pairs = graph.all_edges().iter().any(|e| e.and_next);
         let stops = (0..n).map(|node| graph.stop(node).map_or(W::NONE, &weigh)).collect();
         let most_rows = (patience / graph.work(1).max(1)).max(1);
         let rows = vec![W::NONE; widest * n];
         let mut table = Self {
             graph,
-            weights,
-            back,
+            joins,
             has_pairs,
             stops,
             window,
@@ -190,7 +194,7 @@ impl<W: Weigh> Table<W> {
         let longest = *self.window.end() as usize;
         // As long as runs may stop, costs do not grow.
         let first = longest - *self.window.start() as usize + 1;
-        let mut recurrence = Recurrence::new();
+        let mut recurrence = Recurrence::new(n, longest);
         for depth in 0..=longest {
             let row = depth % self.block;
             if row == 0 {
@@ -296,8 +300,10 @@ impl<W: Weigh> Table<W> {
         let Some(depth) = self.window.end().checked_sub(length) else { return W::NONE };
         let (depth, n) = (depth as usize, self.graph.len());
         if let Some(tail) = self.tail.as_ref().filter(|tail| depth >= tail.from) {
-            let (times, row) = ((depth - tail.from) / tail.period, (depth - tail.from) % tail.period);
-            return tail.rows[row * n + node].shifted(tail.excess * times as i64);
+            // Divisions of whole words would be most of the time.
+            let (below, period) = ((depth - tail.from) as u32, tail.period as u32);
+            let (times, row) = (below / period, (below % period) as usize);
+            return tail.rows[row * n + node].shifted(tail.excess * i64::from(times));
         }
         let row = (depth + self.widest).checked_sub(self.loaded * self.block);
         row.and_then(|row| self.rows.get(row * n + node).copied()).unwrap_or(W::NONE)
@@ -310,7 +316,7 @@ impl<W: Weigh> Table<W> {
 
     /// What a join amounts to, without what follows.
     pub(super) fn weight(&self, edge: usize) -> W {
-        self.weights[edge]
+        self.joins[edge].weight
     }
 
     /// Computes a row of the loaded block from those before it.
@@ -327,10 +333,11 @@ impl<W: Weigh> Table<W> {
         for (node, value) in here[..n].iter_mut().enumerate() {
             let stop = if may_stop { self.stops[node] } else { W::NONE };
             let edges = self.graph.edges_of(node);
-            let rest = |edge: usize| above[at - self.back[edge] as usize];
             *value = match self.has_pairs {
-                false => edges.fold(stop, |sum, edge| sum.or(rest(edge).after(self.weights[edge]))),
-                true => self.sum_of_pairs(edges, stop, rest),
+                false => self.joins[edges]
+                    .iter()
+                    .fold(stop, |sum, join| sum.or(above[at - join.back as usize].after(join.weight))),
+                true => self.sum_of_pairs(edges, stop, |edge| above[at - self.joins[edge].back as usize]),
             };
         }
         self.rows = rows;
@@ -347,7 +354,7 @@ impl<W: Weigh> Table<W> {
             };
             match self.graph.all_edges()[edge].and_next {
                 true => pending = Some(rest),
-                false => sum = sum.or(rest.after(self.weights[edge])),
+                false => sum = sum.or(rest.after(self.joins[edge].weight)),
             }
         }
         sum
