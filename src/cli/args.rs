@@ -7,7 +7,9 @@ use clap::{Args, Parser, Subcommand};
 use super::laser::LaserArgs;
 use super::make::MakeArgs;
 use super::picture::PictureArgs;
+use super::preset::PresetArgs;
 use super::print::PrintArgs;
+use super::shell::{CompletionsArguments, ManArguments};
 use super::values;
 use crate::domain::{CurveSpec, RectSize};
 use crate::job::{KeptRange, SlicingChoice, StitchMethod};
@@ -38,6 +40,12 @@ pub(super) enum Command {
     /// Count components and holes (SVG, DXF) or shells and genus (STL, 3MF, OBJ) of a file, and check them
     #[command(after_help = VERIFY_HELP)]
     Verify(VerifyArguments),
+    /// Print the JSON schema of every option, as presets have them, and of every report
+    Schema,
+    /// Print what completes the arguments in a shell
+    Completions(CompletionsArguments),
+    /// Print the manual page, or write those of all commands
+    Man(ManArguments),
 }
 
 const BAND_HELP: &str = "\
@@ -232,6 +240,8 @@ pub(super) struct PatternArguments {
     pub(super) make: MakeArgs,
     #[command(flatten)]
     pub(super) picture: PictureArgs,
+    #[command(flatten)]
+    pub(super) preset: PresetArgs,
     /// A file to write: .svg, .dxf, .stl, .3mf, .obj or .png; may be repeated; - is SVG on standard output
     #[arg(short, long, value_name = "FILE", required = true)]
     pub(super) output: Vec<PathBuf>,
@@ -308,6 +318,8 @@ pub(super) struct ExtrudeArguments {
     pub(super) make: MakeArgs,
     #[command(flatten)]
     pub(super) picture: PictureArgs,
+    #[command(flatten)]
+    pub(super) preset: PresetArgs,
     /// A file to write: .stl, .3mf, .obj, .svg (the outline, with its bridges), .dxf or .png; may be repeated; - is STL on
     /// standard output
     #[arg(short, long, value_name = "FILE", required = true)]

@@ -10,7 +10,7 @@ use super::args::{
 };
 use super::laser::say_cuts;
 use super::progress::Progress;
-use super::{extrude, rect, verify};
+use super::{extrude, rect, schema, shell, verify};
 use crate::analysis::{Analysis, AnalysisError};
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
 use crate::export;
@@ -77,6 +77,9 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, CliError> {
         Command::Analyze(analyze) => run_analyze(&analyze),
         Command::Extrude(arguments) => extrude::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
+        Command::Schema => shell::print(schema::schema().as_bytes()).map(|()| ExitCode::SUCCESS),
+        Command::Completions(arguments) => shell::completions(&arguments).map(|()| ExitCode::SUCCESS),
+        Command::Man(arguments) => shell::man(&arguments).map(|()| ExitCode::SUCCESS),
     }
 }
 

@@ -6,6 +6,7 @@
 //! and the kerf, which the regions have already.
 
 use glam::DVec2;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::ExportError;
@@ -16,7 +17,7 @@ use super::outlines::{Curves, outlines};
 use crate::planar::Region;
 
 /// What is to be done along a path.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Layer {
     /// Only the surface is marked.
@@ -60,7 +61,7 @@ impl Layer {
 }
 
 /// What cutting takes, in numbers.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, JsonSchema)]
 pub struct CutNumbers {
     /// The length of all cuts.
     pub cut_length_mm: f64,

@@ -1,12 +1,13 @@
 //! Materials, and the numbers of a part that cost money.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Densities from foam to platinum, in grams for each cubic centimetre; outside, it is a slip of a unit.
 pub(super) const DENSITIES: std::ops::RangeInclusive<f64> = 0.01..=25.0;
 
 /// A material.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Material {
     /// Its name on the command line.
     pub name: String,
@@ -50,7 +51,7 @@ pub(super) fn rows() -> String {
 }
 
 /// What a part takes of its material.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct MaterialReport {
     /// The material.
     #[serde(flatten)]

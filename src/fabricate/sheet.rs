@@ -7,13 +7,14 @@
 use std::fmt;
 
 use glam::DVec2;
+use schemars::JsonSchema;
 use serde::Serialize;
 use thiserror::Error;
 
 use crate::planar::{FillRule, Grid, GridError, GridPoint, Part, Region};
 
 /// Width and height of a plate in millimetres.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct SheetSize {
     /// From left to right.
     pub width_mm: f64,
@@ -72,13 +73,15 @@ pub enum SheetError {
 }
 
 /// A piece of the plate that nothing holds.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct FallenPiece {
     /// The middle of its bounding box, from the plate's lower left corner.
     #[serde(serialize_with = "as_pair")]
+    #[schemars(with = "[f64; 2]")]
     pub position_mm: DVec2,
     /// Width and height of its bounding box.
     #[serde(serialize_with = "as_pair")]
+    #[schemars(with = "[f64; 2]")]
     pub size_mm: DVec2,
     /// Its area in square millimetres, without its own openings.
     pub area_mm2: f64,

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use glam::DVec2;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::bridging::{self, BridgesReport};
@@ -25,7 +26,7 @@ use crate::verify::{self, Expected, MeshReport, Mismatch, NarrowPlaces, SvgRepor
 const READ_SHARE: f64 = 0.5;
 
 /// What was extruded, and what was found in the files.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ExtrudeReport {
     /// The version of this structure.
     pub schema_version: u32,

@@ -4,6 +4,7 @@
 //! be sound, leave as many components and holes as are wanted, and do so too when the kerf is taken off again.
 
 use glam::DVec2;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::error::JobError;
@@ -98,7 +99,7 @@ impl LaserOptions {
 }
 
 /// What was cut, in numbers. Lengths are millimetres.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct LaserReport {
     /// The width that the beam burns away, if one was given.
     pub kerf_mm: Option<f64>,
@@ -118,7 +119,7 @@ pub struct LaserReport {
 }
 
 /// A file of cut lines.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct LaserFile {
     /// Its name.
     pub file: String,

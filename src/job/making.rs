@@ -1,6 +1,7 @@
 //! What a machine and a material ask of a part: enforcing widths, the worst places, and the numbers that cost money.
 
 use glam::DVec2;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::error::JobError;
@@ -14,7 +15,7 @@ const WORST: usize = 10;
 const CHANGES: usize = 10;
 
 /// What was thickened and widened. Areas are square millimetres.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct EnforcedReport {
     /// The ink that was added.
     pub added_mm2: f64,
@@ -86,7 +87,7 @@ pub(super) fn worst_places(region: &Region, tolerances: &Tolerances) -> NarrowPl
 }
 
 /// The numbers of a part that cost money. Lengths are millimetres.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct CostReport {
     /// Ink of the part in square millimetres.
     pub area_mm2: f64,

@@ -1,5 +1,6 @@
 //! The report of a band, as JSON.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::bridging::BridgesReport;
@@ -13,7 +14,7 @@ use crate::solver::Tally;
 use crate::verify::{NarrowPlaces, Narrowest};
 
 /// An input file.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct InputReport {
     /// The name as it was given.
     pub file: String,
@@ -22,7 +23,7 @@ pub struct InputReport {
 }
 
 /// The seams of a band.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct SeamReport {
     /// The number of seams.
     pub count: usize,
@@ -35,7 +36,7 @@ pub struct SeamReport {
 }
 
 /// A cut that was left out, as its narrowest portal is under the minimum feature (Zhou 2014 §5.2.1).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct DroppedCutReport {
     /// Where it would have been, from the left edge of the exemplar at the size that it has in the band.
     pub x_mm: f64,
@@ -44,7 +45,7 @@ pub struct DroppedCutReport {
 }
 
 /// How pieces were bent to meet.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct StitchReport {
     /// `warp` or `lri`: what the band was made with.
     pub method: String,
@@ -55,7 +56,7 @@ pub struct StitchReport {
 }
 
 /// A piece that was warped instead.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct FallbackReport {
     /// Its place in the sequence, from 0.
     pub place: usize,
@@ -66,7 +67,7 @@ pub struct FallbackReport {
 }
 
 /// How long a stage took.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct StageTime {
     /// The stage.
     pub stage: &'static str,
@@ -79,7 +80,7 @@ pub(super) const NOT_COUNTED: &str =
     "not counted: bands are counted whose sequences meet what was asked for without bridges";
 
 /// What was asked for, what was made, and what was found in the files. Lengths are millimetres.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct BandReport {
     /// The version of this structure; it changes when a field changes its meaning or goes.
     pub schema_version: u32,
@@ -184,7 +185,7 @@ pub struct BandReport {
 }
 
 /// The part and its files, in a report. Lengths are millimetres.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct MadeReport {
     /// The narrowest ink, measured on the result.
     pub min_feature: Option<Narrowest>,

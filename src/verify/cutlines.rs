@@ -12,6 +12,7 @@ use std::fmt;
 use glam::DVec2;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::error::VerifyError;
@@ -26,7 +27,7 @@ const JOIN_MM: f64 = 1e-4;
 const UNCUT: [&str; 2] = ["ENGRAVE", "SHEET"];
 
 /// What a file of cut lines holds. Lengths are millimetres, y up; an SVG's from the page's lower left corner.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct CutReport {
     /// The number of connected components of the material.
     pub components: usize,
@@ -36,6 +37,7 @@ pub struct CutReport {
     pub area_mm2: f64,
     /// The lower left and upper right corner of the material; `None` when there is none.
     #[serde(serialize_with = "super::json::corners")]
+    #[schemars(with = "Option<[[f64; 2]; 2]>")]
     pub bounds_mm: Option<(DVec2, DVec2)>,
     /// The unit of the file.
     pub unit: &'static str,
@@ -61,7 +63,7 @@ pub struct CutReport {
 }
 
 /// A layer of a file of cut lines.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct CutLayer {
     /// Its name.
     pub name: String,
@@ -74,7 +76,7 @@ pub struct CutLayer {
 }
 
 /// Something in a file of cut lines that would spoil the part.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum CutFault {
     /// A path that does not come back, nor do those that go on from its ends.
@@ -83,6 +85,7 @@ pub enum CutFault {
         element: String,
         /// One of its loose ends.
         #[serde(serialize_with = "super::json::point")]
+        #[schemars(with = "[f64; 2]")]
         position_mm: DVec2,
     },
     /// A closed path around no area.
@@ -91,12 +94,14 @@ pub enum CutFault {
         element: String,
         /// Where it begins.
         #[serde(serialize_with = "super::json::point")]
+        #[schemars(with = "[f64; 2]")]
         position_mm: DVec2,
     },
     /// Two lines run along each other, so that the same cut is made twice.
     Doubled {
         /// The middle of the stretch.
         #[serde(serialize_with = "super::json::point")]
+        #[schemars(with = "[f64; 2]")]
         position_mm: DVec2,
         /// How long it is.
         length_mm: f64,
@@ -105,12 +110,14 @@ pub enum CutFault {
     Crossing {
         /// Where.
         #[serde(serialize_with = "super::json::point")]
+        #[schemars(with = "[f64; 2]")]
         position_mm: DVec2,
     },
     /// A contour is cut before one that lies inside of it.
     Order {
         /// Where the outer one begins.
         #[serde(serialize_with = "super::json::point")]
+        #[schemars(with = "[f64; 2]")]
         position_mm: DVec2,
     },
 }

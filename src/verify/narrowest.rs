@@ -15,6 +15,7 @@ use std::iter::Peekable;
 use std::vec;
 
 use glam::DVec2;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::ascent::{Climber, Spot};
@@ -34,12 +35,13 @@ const STARTS: usize = 8;
 const ROUNDING: f64 = 1e-9;
 
 /// A narrowest place: its width, and the middle of it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Narrowest {
     /// The width in millimetres: eroding (or dilating) by half of it changes the counts.
     pub width_mm: f64,
     /// The middle of the place in millimetres, y up.
     #[serde(serialize_with = "super::json::point")]
+    #[schemars(with = "[f64; 2]")]
     pub position_mm: DVec2,
 }
 
@@ -74,7 +76,7 @@ pub fn widths(region: &Region, chord_mm: f64) -> Widths {
 }
 
 /// Narrow places of a region, the narrowest first.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub struct NarrowPlaces {
     /// Where erosion loses ink.
     pub ink: Vec<Narrowest>,

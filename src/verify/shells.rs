@@ -10,6 +10,7 @@ use std::fmt;
 
 use glam::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::crossings::crossings;
@@ -26,7 +27,7 @@ pub(super) struct Facet {
 }
 
 /// What a mesh file (STL, 3MF or OBJ) holds, in millimetres.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct MeshReport {
     /// The number of facets.
     pub triangles: usize,
@@ -45,7 +46,7 @@ pub struct MeshReport {
 }
 
 /// One connected surface.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Shell {
     /// The number of facets.
     pub triangles: usize,
@@ -56,7 +57,7 @@ pub struct Shell {
 }
 
 /// A place where facets are not the boundary of a solid. Facets count from 0, in the order of the file.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct MeshFault {
     /// What is wrong.
     pub kind: MeshFaultKind,
@@ -67,7 +68,7 @@ pub struct MeshFault {
 }
 
 /// The ways in which facets can fail to bound a solid.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum MeshFaultKind {
     /// The facet has no area.

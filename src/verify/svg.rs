@@ -5,6 +5,7 @@ use std::fmt;
 use glam::DVec2;
 use roxmltree::{Document, ParsingOptions};
 use rustc_hash::FxHashSet;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::drawing::{Drawing, Shape};
@@ -21,7 +22,7 @@ const MAX_NODES: u32 = 4_000_000;
 const OVERLAP_PART: f64 = 1e-9;
 
 /// What an SVG holds. Lengths are millimetres from the page's lower left corner, y up.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct SvgReport {
     /// The number of connected components of the ink.
     pub components: usize,
@@ -31,9 +32,11 @@ pub struct SvgReport {
     pub area_mm2: f64,
     /// The lower left and upper right corner of the ink; `None` when there is none.
     #[serde(serialize_with = "super::json::corners")]
+    #[schemars(with = "Option<[[f64; 2]; 2]>")]
     pub bounds_mm: Option<(DVec2, DVec2)>,
     /// Width and height of the page.
     #[serde(serialize_with = "super::json::point")]
+    #[schemars(with = "[f64; 2]")]
     pub page_mm: DVec2,
     /// The number of vertices after curves were made polygons.
     pub vertices: usize,
@@ -51,19 +54,21 @@ pub struct SvgReport {
 }
 
 /// Something in an SVG that a cutter or a slicer may stumble over. It does not change the counts.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum SvgFault {
     /// Contours cross or touch themselves or each other.
     Crossing {
         /// Where.
         #[serde(serialize_with = "super::json::point")]
+        #[schemars(with = "[f64; 2]")]
         position_mm: DVec2,
     },
     /// A contour covers ink twice, or is a hole outside of any ink.
     Nesting {
         /// A point of the contour.
         #[serde(serialize_with = "super::json::point")]
+        #[schemars(with = "[f64; 2]")]
         position_mm: DVec2,
     },
     /// Several elements paint the same area.
@@ -77,6 +82,7 @@ pub enum SvgFault {
         element: String,
         /// Where the subpath begins.
         #[serde(serialize_with = "super::json::point")]
+        #[schemars(with = "[f64; 2]")]
         position_mm: DVec2,
     },
     /// A subpath without area, or one whose loops cancel.
@@ -85,12 +91,14 @@ pub enum SvgFault {
         element: String,
         /// Where the subpath begins.
         #[serde(serialize_with = "super::json::point")]
+        #[schemars(with = "[f64; 2]")]
         position_mm: DVec2,
     },
     /// Ink beyond the page.
     OutsidePage {
         /// A corner of the ink's bounding box that is beyond it.
         #[serde(serialize_with = "super::json::point")]
+        #[schemars(with = "[f64; 2]")]
         position_mm: DVec2,
     },
 }

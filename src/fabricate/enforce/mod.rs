@@ -24,6 +24,7 @@ mod stroke;
 mod tests;
 
 use glam::DVec2;
+use schemars::JsonSchema;
 use serde::Serialize;
 use thiserror::Error;
 
@@ -77,7 +78,7 @@ pub struct EnforceOptions {
 }
 
 /// A place where ink was added or taken away.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Change {
     /// The middle of the box around it, in millimetres.
     pub position_mm: [f64; 2],
