@@ -36,7 +36,7 @@ pub(super) enum Command {
     Analyze(AnalyzeArguments),
     /// Extrude any SVG, as it is, to a verified solid, or turn it into cut lines
     #[command(after_help = EXTRUDE_HELP)]
-    Extrude(ExtrudeArguments),
+    Extrude(Box<ExtrudeArguments>),
     /// Count components and holes (SVG, DXF) or shells and genus (STL, 3MF, OBJ) of a file, and check them
     #[command(after_help = VERIFY_HELP)]
     Verify(VerifyArguments),

@@ -104,7 +104,7 @@ impl Raster {
     }
 
     /// A point of a frame in cells: the centre of the first is at one half.
-    pub(super) fn to_cells(&self, p: DVec3) -> DVec3 {
+    pub(super) fn in_cells(&self, p: DVec3) -> DVec3 {
         let at = (p.truncate() - self.low) * self.scale;
         at.extend(p.z)
     }

@@ -26,7 +26,7 @@ impl Depths {
             triangles: vec![NONE; raster.cells()],
         };
         for (number, corners) in triangles.iter().enumerate() {
-            let [a, b, c] = corners.map(|p| raster.to_cells(camera.of(p)));
+            let [a, b, c] = corners.map(|p| raster.in_cells(camera.of(p)));
             // From behind; walls that are seen from the side have no cells.
             if (b - a).truncate().perp_dot((c - a).truncate()) > 0.0 {
                 depths.draw([a, b, c], number as u32);
