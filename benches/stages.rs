@@ -12,7 +12,8 @@ use divan::{Bencher, black_box};
 use glam::DVec2;
 use openwork::domain::{BandMap, CurveSpec, PlanarCurve};
 use openwork::exemplar::{Exemplar, Limits, ReadOptions};
-use openwork::fabricate::{BridgeOptions, Counts, bridge, snapped_to_f32};
+use openwork::export;
+use openwork::fabricate::{BridgeOptions, Counts, bridge, extrude, snapped_to_f32};
 use openwork::fit::{FitOptions, Outline, Sides, StitchMethod};
 use openwork::job::{Band, BandBuilder, DEFAULT_MEMORY_LIMIT, Output, Plan, PlanOptions, plan};
 use openwork::pieces::{Catalogue, CostWeights};
@@ -211,6 +212,41 @@ fn write_svg(bencher: Bencher, case: Case) {
 fn extrude_to_stl(bencher: Bencher, case: Case) {
     let band = band(case);
     bencher.bench(|| black_box(&band).stl().expect("the bands are solids"));
+}
+
+/// A disc with a wavy edge of a hundred thousand vertices, on the grid of the files.
+fn wavy_disc() -> Region {
+    const VERTICES: u32 = 100_000;
+    let grid = Grid::for_extent(200.0).expect("the disc is in range");
+    let point = |i: u32| {
+        let angle = f64::from(i) / f64::from(VERTICES) * 2.0 * PI;
+        let radius = 80.0 + 5.0 * (60.0 * angle).sin();
+        grid.snap(DVec2::splat(100.0) + DVec2::from_angle(angle) * radius).expect("the disc is on the grid")
+    };
+    let disc = Region::fill(grid, &[(0..VERTICES).map(point).collect()], FillRule::NonZero);
+    snapped_to_f32(&disc).expect("a file can hold the disc")
+}
+
+/// From an outline of a hundred thousand vertices to the STL file.
+#[divan::bench(sample_count = 20)]
+fn outline_to_stl(bencher: Bencher) {
+    let disc = wavy_disc();
+    let folder = tempfile::tempdir().expect("a folder for the file");
+    bencher.bench(|| {
+        let solid = extrude(black_box(&disc), 2.0).expect("the disc is a solid");
+        std::fs::write(folder.path().join("disc.stl"), export::stl(&solid, "").expect("it fits the format"))
+    });
+}
+
+/// Of that, what writing the file takes.
+#[divan::bench(sample_count = 20)]
+fn outline_to_stl_bytes(bencher: Bencher) {
+    let solid = extrude(&wavy_disc(), 2.0).expect("the disc is a solid");
+    let folder = tempfile::tempdir().expect("a folder for the file");
+    bencher.bench(|| {
+        let bytes = export::stl(black_box(&solid), "").expect("it fits the format");
+        std::fs::write(folder.path().join("disc.stl"), bytes)
+    });
 }
 
 #[divan::bench(args = cases(), sample_count = 10)]

@@ -204,16 +204,38 @@ fn an_output_that_cannot_be_a_file() {
     refuses("-o out.svg --report no/out.json", &["cannot write no/out.json", "make the directory first"]);
     refuses("-o folder.svg", &["cannot write folder.svg", "not a file", "give a file name"]);
     refuses("-o vine.svg/out.svg", &["cannot write vine.svg/out.svg", "give another directory"]);
-    refuses("-o out.dxf", &["--output", "out.dxf", ".svg, .stl or .png"]);
-    refuses("-o out", &["--output", "out does not say a format", ".svg, .stl or .png"]);
+    refuses("-o out.pdf", &["--output", "out.pdf", ".svg, .dxf, .stl, .3mf, .obj or .png"]);
+    refuses("-o out", &["--output", "out does not say a format", ".svg, .dxf, .stl, .3mf, .obj or .png"]);
     refuses("", &["--output <FILE>"]);
-    room.refuses("extrude vine.svg -o out.dxf", 2, &["--output", "out.dxf does not say a format", ".stl"]);
+    room.refuses("extrude vine.svg -o out.pdf", 2, &["--output", "out.pdf does not say a format", ".stl"]);
     room.refuses(
         "extrude vine.svg -o no/out.stl",
         2,
         &["cannot write no/out.stl", "make the directory first"],
     );
     room.refuses("analyze vine.svg -o out.stl", 2, &["--output", "out.stl", ".svg or .png"]);
+}
+
+#[test]
+fn solids_that_no_printer_makes() {
+    let room = Room::with(&[]);
+    room.draw("bars.svg", "<path d='M10 10H110V14H10Z M10 14H14V30H10Z'/>");
+    let refuses = |options: &str, code: i32, words: &[&str]| {
+        room.refuses(&format!("extrude bars.svg --thickness 3mm {options} -o out.3mf"), code, words);
+    };
+    refuses("--chamfer 1.5mm", 2, &["the chamfer is 1.5 mm", "less than half of the thickness of 3 mm"]);
+    refuses("--chamfer -1mm", 2, &["the chamfer is -1 mm"]);
+    refuses("--taper 60", 2, &["the taper is 60 degrees", "less than 45"]);
+    refuses("--taper 40", 3, &["too narrow for walls that go in by 2.517 mm", "a taper of 37.", "does"]);
+    refuses("--max-triangles 3", 2, &["at most 3 are allowed", "no chord error does"]);
+    refuses(
+        "--bed 50x50mm",
+        2,
+        &["100.00 x 20.00 x 3.00 mm", "does not fit a bed of 50 x 50 mm", "larger bed"],
+    );
+    refuses("--bed 220x220x2mm", 2, &["does not fit a bed of 220 x 220 x 2 mm"]);
+    refuses("--bed 220", 2, &["--bed", "give a bed as 220x220mm"]);
+    refuses("--place", 2, &["--bed"]);
 }
 
 #[test]

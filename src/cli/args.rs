@@ -4,6 +4,12 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+use super::laser::LaserArgs;
+use super::make::MakeArgs;
+use super::picture::PictureArgs;
+use super::preset::PresetArgs;
+use super::print::PrintArgs;
+use super::shell::{CompletionsArguments, ManArguments};
 use super::values;
 use crate::domain::{CurveSpec, RectSize};
 use crate::job::{KeptRange, SlicingChoice, StitchMethod};
@@ -19,21 +25,27 @@ pub struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
-    /// Synthesize a band along a line, a circle or any path, and write it as SVG, STL or PNG
+    /// Synthesize a band along a line, a circle or any path, and write it as SVG, DXF, STL, 3MF, OBJ or PNG
     #[command(after_help = BAND_HELP)]
     Band(Box<BandArguments>),
-    /// Synthesize a rectangle, in both directions, and write it as SVG, STL or PNG
+    /// Synthesize a rectangle, in both directions, and write it as SVG, DXF, STL, 3MF, OBJ or PNG
     #[command(after_help = RECT_HELP)]
     Rect(Box<RectArguments>),
     /// Show how an exemplar is understood: critical points, cuts, pieces, portals, descriptors
     #[command(after_help = ANALYZE_HELP)]
     Analyze(AnalyzeArguments),
-    /// Extrude any SVG, as it is, to a verified solid
+    /// Extrude any SVG, as it is, to a verified solid, or turn it into cut lines
     #[command(after_help = EXTRUDE_HELP)]
-    Extrude(ExtrudeArguments),
-    /// Count components and holes (SVG) or shells and genus (STL) of a file, and check them
+    Extrude(Box<ExtrudeArguments>),
+    /// Count components and holes (SVG, DXF) or shells and genus (STL, 3MF, OBJ) of a file, and check them
     #[command(after_help = VERIFY_HELP)]
     Verify(VerifyArguments),
+    /// Print the JSON schema of every option, as presets have them, and of every report
+    Schema,
+    /// Print what completes the arguments in a shell
+    Completions(CompletionsArguments),
+    /// Print the manual page, or write those of all commands
+    Man(ManArguments),
 }
 
 const BAND_HELP: &str = "\
@@ -53,7 +65,9 @@ Examples:
     openwork band lace.svg --along path:collar.svg#edge --min-feature 0.4mm -o collar.stl
   A stencil from an ornament of many parts: one piece, nothing that falls out:
     openwork band foliage.svg --along line:240mm --components 1 --holes 0 --bridge 1mm -o stencil.svg
-
+  A border to be cut by a laser, and a sign from whose plate nothing falls out:
+    openwork band scroll.svg --along line:240mm --components 1 --kerf 0.15mm -o border.dxf
+    openwork band scroll.svg --along line:240mm --holes 0 --bridge 1mm --sheet 300x100mm --carve -o sign.dxf -o sign.png
   Twelve different bands of the same ornament:
     openwork band vine.svg --along line:120mm --components 1 --count 12 --seed 7 -o vine.svg
 
@@ -91,6 +105,10 @@ Lengths take mm, cm, in, pt or px (96 to the inch); a bare number is millimetres
 
 Examples:
   openwork extrude sign.svg --thickness 3mm -o sign.stl
+  For a laser: arcs and lines, inner contours first, with the width of the beam taken into account:
+    openwork extrude sign.svg --kerf 0.15mm -o sign.dxf
+  With bevelled edges, for a printer of 220 mm:
+    openwork extrude sign.svg --thickness 3mm --chamfer 0.5mm --bed 220x220mm --place -o sign.3mf
   A stencil of one's own drawing in one piece, from which nothing falls out, and a picture of where the bridges are
   (struts orange, slits green):
     openwork extrude letters.svg --bridge 1mm --components 1 --holes 0 -o stencil.svg -o stencil.png
@@ -106,6 +124,8 @@ Exit code 4 when the file is not as asked for, 2 when it cannot be read. Faults 
 Examples:
   One piece that a nozzle of 0.5 mm can print:
     openwork verify sign.svg --components 1 --holes 0..4 --min-feature 0.5mm
+  A file for a laser: closed paths, nothing cut twice, nothing that crosses:
+    openwork verify sign.dxf --components 1
   What a solid has, as JSON:
     openwork verify sign.stl --json
   Whether copies of a tile join, and what the tiling has:
@@ -205,17 +225,24 @@ pub(super) struct PatternArguments {
     /// tried takes 8MB at most
     #[arg(long, value_name = "SIZE", value_parser = values::memory, default_value = "2GB")]
     pub(super) memory_limit: usize,
-    /// Thickness of the solid
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "2mm", allow_hyphen_values = true)]
-    pub(super) thickness: f64,
     /// Join components by struts and open holes by slits of this width, as few and as short as can be, where the ornament
     /// cannot give the components or holes asked for, or only with many jumps: a bridge costs as much as half a jump
     /// [default: none, and what cannot be is refused]
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(super) bridge: Option<f64>,
     #[command(flatten)]
+    pub(super) print: PrintArgs,
+    #[command(flatten)]
     pub(super) tolerances: ToleranceArguments,
-    /// A file to write: .svg, .stl or .png; may be repeated; - is SVG on standard output
+    #[command(flatten)]
+    pub(super) laser: LaserArgs,
+    #[command(flatten)]
+    pub(super) make: MakeArgs,
+    #[command(flatten)]
+    pub(super) picture: PictureArgs,
+    #[command(flatten)]
+    pub(super) preset: PresetArgs,
+    /// A file to write: .svg, .dxf, .stl, .3mf, .obj or .png; may be repeated; - is SVG on standard output
     #[arg(short, long, value_name = "FILE", required = true)]
     pub(super) output: Vec<PathBuf>,
     /// Write a report of what was asked for, made and measured (JSON; - for standard output)
@@ -234,9 +261,9 @@ pub(super) struct ToleranceArguments {
     /// Narrowest gap the machine keeps open; counts must survive dilating by half of it [default: not checked]
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(super) min_gap: Option<f64>,
-    /// Greatest distance between a curve and what stands for it
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "0.01mm", allow_hyphen_values = true)]
-    pub(super) chord: f64,
+    /// Greatest distance between a curve and what stands for it [default: that of the process, or 0.01mm]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    pub(super) chord: Option<f64>,
 }
 
 #[derive(Debug, Args)]
@@ -272,9 +299,6 @@ pub(super) struct AnalyzeArguments {
 pub(super) struct ExtrudeArguments {
     /// The drawing (SVG)
     pub(super) file: PathBuf,
-    /// Thickness of the solid
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "2mm", allow_hyphen_values = true)]
-    pub(super) thickness: f64,
     /// Lay bridges of this width so that the drawing has the components and holes asked for: struts join, slits open
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(super) bridge: Option<f64>,
@@ -284,10 +308,20 @@ pub(super) struct ExtrudeArguments {
     /// Holes that bridges are to make: a number, a range or any [default: as drawn]
     #[arg(long, value_name = "M", value_parser = values::wanted, requires = "bridge", allow_negative_numbers = true)]
     pub(super) holes: Option<values::Count>,
-    /// Greatest distance between a curve and its chords
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "0.01mm", allow_hyphen_values = true)]
-    pub(super) chord: f64,
-    /// A file to write: .stl, .svg (the outline, with its bridges) or .png; may be repeated; - is STL on standard output
+    #[command(flatten)]
+    pub(super) tolerances: ToleranceArguments,
+    #[command(flatten)]
+    pub(super) print: PrintArgs,
+    #[command(flatten)]
+    pub(super) laser: LaserArgs,
+    #[command(flatten)]
+    pub(super) make: MakeArgs,
+    #[command(flatten)]
+    pub(super) picture: PictureArgs,
+    #[command(flatten)]
+    pub(super) preset: PresetArgs,
+    /// A file to write: .stl, .3mf, .obj, .svg (the outline, with its bridges), .dxf or .png; may be repeated; - is STL on
+    /// standard output
     #[arg(short, long, value_name = "FILE", required = true)]
     pub(super) output: Vec<PathBuf>,
     /// Print what was made and found as JSON on standard output, each bridge with its position
@@ -300,8 +334,12 @@ pub(super) struct ExtrudeArguments {
 
 #[derive(Debug, Args)]
 pub(super) struct VerifyArguments {
-    /// The file (.svg or .stl)
+    /// The file (.svg, .dxf, .stl, .3mf or .obj)
     pub(super) file: PathBuf,
+    /// Read an .svg as lines to be cut, whatever paints them: material is what an odd number of them is around. Files that
+    /// say so themselves, as those of --cut, are always read so
+    #[arg(long)]
+    pub(super) cut_lines: bool,
     /// The report that was written with the file: replay its certificate, step by step
     #[arg(long, value_name = "REPORT.json")]
     pub(super) certificate: Option<PathBuf>,
@@ -311,10 +349,10 @@ pub(super) struct VerifyArguments {
     /// It must be a tile: opposite sides match, so that copies join (SVG). Tells what the tiling has
     #[arg(long)]
     pub(super) tiles: bool,
-    /// Components (SVG) or shells (STL) that it must have: a number, a range with both ends as 1..2, or any
+    /// Components (SVG) or shells (solids) that it must have: a number, a range with both ends as 1..2, or any
     #[arg(long, value_name = "N", value_parser = values::wanted, default_value = "any", hide_default_value = true, allow_negative_numbers = true)]
     pub(super) components: values::Count,
-    /// Holes (SVG) or total genus (STL) that it must have: a number, a range or any
+    /// Holes (SVG) or total genus (solids) that it must have: a number, a range or any
     #[arg(long, value_name = "M", value_parser = values::wanted, default_value = "any", hide_default_value = true, allow_negative_numbers = true)]
     pub(super) holes: values::Count,
     #[command(flatten)]

@@ -3,25 +3,33 @@
 use std::process::ExitCode;
 
 use super::args::ExtrudeArguments;
+use super::laser::say_cuts;
 use super::progress::Progress;
-use super::run::{CliError, output, print_json, refuse_json_beside, say_bridges, say_notes};
-use crate::job::{ExtrudeBridges, ExtrudeReport, Format, Output, extrude};
+use super::run::{CliError, output, print_json, refuse_json_beside, say_bridges, say_cost, say_notes};
+use crate::job::{ExtrudeBridges, ExtrudeMaking, ExtrudeReport, Format, Output, extrude};
 use crate::planar::Tolerances;
 
 pub(super) fn run(arguments: &ExtrudeArguments) -> Result<ExitCode, CliError> {
     let outputs: Vec<Output> =
         arguments.output.iter().map(|path| output(path, Format::Stl)).collect::<Result<_, _>>()?;
     refuse_json_beside(arguments.json, &outputs)?;
-    let tolerances = Tolerances::new(arguments.chord, 0.0, 0.0)?;
+    let made = arguments.make.made(&arguments.tolerances)?;
+    let making = ExtrudeMaking {
+        thickness_mm: made.thickness_mm,
+        tolerances: Tolerances::new(made.chord_mm, made.min_feature_mm, made.min_gap_mm)?,
+        enforce: arguments.make.enforce,
+        material: made.material,
+        print: arguments.print.options(),
+        laser: arguments.laser.options(made.kerf_mm, &arguments.output),
+        picture: arguments.picture.options(),
+    };
     let bridges = arguments.bridge.map(|width_mm| ExtrudeBridges {
         width_mm,
         components: arguments.components.and_then(|count| count.0),
         holes: arguments.holes.and_then(|count| count.0),
     });
     let progress = Progress::new(arguments.quiet, outputs.iter().map(Output::target));
-    let made = extrude(&arguments.file, arguments.thickness, &tolerances, bridges, &outputs, &mut |stage| {
-        progress.show(stage)
-    })?;
+    let made = extrude(&arguments.file, &making, bridges, &outputs, &mut |stage| progress.show(stage))?;
     drop(progress);
     if arguments.json {
         print_json(&made)?;
@@ -44,6 +52,8 @@ fn say_made(made: &ExtrudeReport) {
         None => say!("{} component(s), {} hole(s)", made.components, made.holes),
     }
     say_bridges(made.bridges.as_ref(), "--json lists their positions, and a .png shows them in colour");
+    say_cost(Some(&made.cost));
+    say_cuts(made.laser.as_ref());
     say_notes(&made.notes);
     for file in &made.files {
         say!("wrote {file}");

@@ -14,9 +14,16 @@ macro_rules! say {
 
 mod args;
 mod extrude;
+mod laser;
+mod make;
+mod picture;
+mod preset;
+mod print;
 mod progress;
 mod rect;
 mod run;
+mod schema;
+mod shell;
 mod values;
 mod verify;
 
@@ -26,12 +33,20 @@ use clap::Parser;
 
 pub use args::Arguments;
 
+/// The exit code of a program whose input or arguments are wrong.
+const WRONG_INPUT: u8 = 2;
 /// The exit code of a program that was interrupted from the keyboard.
 const INTERRUPTED: i32 = 130;
 
 /// Runs the program with the process's arguments.
 pub fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = match preset::expanded(std::env::args_os().collect()) {
+        Ok(arguments) => Arguments::parse_from(arguments),
+        Err(error) => {
+            say!("error: {error}");
+            return ExitCode::from(WRONG_INPUT);
+        }
+    };
     // Without a handler an interruption still ends the program, only a temporary file may stay behind.
     let _ = ctrlc::set_handler(|| {
         progress::clear();

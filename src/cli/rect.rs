@@ -5,21 +5,20 @@ use std::process::ExitCode;
 use super::args::RectArguments;
 use super::progress::Progress;
 use super::run::{BRIDGES_SHOWN, CliError, destinations, say_bridges, say_found, with_pattern};
-use crate::domain::RectSize;
-use crate::job::{Output, RectBuilder, RectReport};
+use crate::domain::{CurveSpec, RectSize};
+use crate::job::{BandBuilder, Output, RectBuilder, RectReport};
 
 pub(super) fn run_rect(arguments: &RectArguments) -> Result<ExitCode, CliError> {
     let (outputs, report_target) = destinations(&arguments.pattern)?;
     let quiet = arguments.pattern.quiet;
+    let line = CurveSpec::Line { length_mm: arguments.size.width_mm() };
+    let mut band = with_pattern(BandBuilder::new(&arguments.exemplar, line), &arguments.pattern)?;
+    if let Some(seed) = arguments.pattern.seed {
+        band = band.seed(seed);
+    }
     let job = RectBuilder::new(&arguments.exemplar, arguments.size)
         .tile(arguments.tile)
-        .options(|band| {
-            let band = with_pattern(band, &arguments.pattern);
-            match arguments.pattern.seed {
-                Some(seed) => band.seed(seed),
-                None => band,
-            }
-        })
+        .options(|_| band)
         .build()?;
     job.check_outputs(&outputs, report_target.as_ref())?;
     let progress = Progress::new(quiet, outputs.iter().map(Output::target).chain(&report_target));

@@ -8,14 +8,15 @@ use thiserror::Error;
 use super::args::{
     AnalyzeArguments, Arguments, BandArguments, Command, PatternArguments, ToleranceArguments,
 };
+use super::laser::say_cuts;
 use super::progress::Progress;
-use super::{extrude, rect, verify};
+use super::{extrude, rect, schema, shell, verify};
 use crate::analysis::{Analysis, AnalysisError};
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
 use crate::export;
 use crate::job::{
-    BandBuilder, BandReport, BridgesReport, Choice, DEFAULT_TEMPERATURE, Format, JobError, MadeReport,
-    Output, READ_SHARE, SlicingChoice, Target, write_numbered,
+    BandBuilder, BandReport, BridgesReport, Choice, CostReport, DEFAULT_TEMPERATURE, Format, JobError,
+    MadeReport, Output, READ_SHARE, SlicingChoice, Target, write_numbered,
 };
 use crate::pieces::CostWeights;
 use crate::planar::{Tolerances, TolerancesError};
@@ -39,7 +40,7 @@ pub(super) enum CliError {
     Uncertified { file: String, error: CertificateError },
     #[error("{file}: {report}")]
     Refuted { file: String, report: Box<CertificateReport> },
-    #[error("{file}: the name does not say what it is; verify reads .svg and .stl")]
+    #[error("{file}: the name does not say what it is; verify reads .svg, .dxf, .stl, .3mf and .obj")]
     UnknownKind { file: String },
     #[error(transparent)]
     Analysis(#[from] AnalysisError),
@@ -76,12 +77,16 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, CliError> {
         Command::Analyze(analyze) => run_analyze(&analyze),
         Command::Extrude(arguments) => extrude::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
+        Command::Schema => shell::print(schema::schema().as_bytes()).map(|()| ExitCode::SUCCESS),
+        Command::Completions(arguments) => shell::completions(&arguments).map(|()| ExitCode::SUCCESS),
+        Command::Man(arguments) => shell::man(&arguments).map(|()| ExitCode::SUCCESS),
     }
 }
 
 pub(super) fn tolerances(arguments: &ToleranceArguments) -> Result<Tolerances, TolerancesError> {
     let or_none = |length: Option<f64>| length.unwrap_or(0.0);
-    Tolerances::new(arguments.chord, or_none(arguments.min_feature), or_none(arguments.min_gap))
+    let chord_mm = arguments.chord.unwrap_or(Tolerances::DEFAULT_CHORD_MM);
+    Tolerances::new(chord_mm, or_none(arguments.min_feature), or_none(arguments.min_gap))
 }
 
 pub(super) fn output(path: &Path, stdout: Format) -> Result<Output, JobError> {
@@ -184,7 +189,7 @@ pub(super) fn destinations(arguments: &PatternArguments) -> Result<(Vec<Output>,
     Ok((outputs, report_target))
 }
 
-fn builder(arguments: &BandArguments) -> Result<BandBuilder, JobError> {
+fn builder(arguments: &BandArguments) -> Result<BandBuilder, CliError> {
     let builder = BandBuilder::new(&arguments.exemplar, arguments.along.clone())
         .closed_pattern(arguments.closed_pattern)
         .choice(choice(arguments)?)
@@ -193,11 +198,12 @@ fn builder(arguments: &BandArguments) -> Result<BandBuilder, JobError> {
         Some(radius) => builder.round_mm(radius),
         None => builder,
     };
-    Ok(with_pattern(builder, &arguments.pattern))
+    with_pattern(builder, &arguments.pattern)
 }
 
 /// The options that a band and a rectangle share.
-pub(super) fn with_pattern(builder: BandBuilder, a: &PatternArguments) -> BandBuilder {
+pub(super) fn with_pattern(builder: BandBuilder, a: &PatternArguments) -> Result<BandBuilder, CliError> {
+    let made = a.make.made(&a.tolerances)?;
     let mut builder = builder
         .slicing(a.slicing)
         .mirror(a.mirror)
@@ -206,10 +212,17 @@ pub(super) fn with_pattern(builder: BandBuilder, a: &PatternArguments) -> BandBu
         .jump_cost(a.jump_cost)
         .stitch(a.stitch)
         .memory_limit(a.memory_limit)
-        .thickness_mm(a.thickness)
-        .chord_mm(a.tolerances.chord)
-        .min_feature_mm(a.tolerances.min_feature.unwrap_or(0.0))
-        .min_gap_mm(a.tolerances.min_gap.unwrap_or(0.0));
+        .thickness_mm(made.thickness_mm)
+        .chord_mm(made.chord_mm)
+        .min_feature_mm(made.min_feature_mm)
+        .min_gap_mm(made.min_gap_mm)
+        .enforce(a.make.enforce)
+        .laser(a.laser.options(made.kerf_mm, &a.output))
+        .picture(a.picture.options())
+        .print(a.print.options());
+    if let Some(material) = made.material {
+        builder = builder.material(material);
+    }
     for &range in &a.keep {
         builder = builder.keep(range);
     }
@@ -225,7 +238,7 @@ pub(super) fn with_pattern(builder: BandBuilder, a: &PatternArguments) -> BandBu
     if let Some(width) = a.bridge {
         builder = builder.bridge_mm(width);
     }
-    builder
+    Ok(builder)
 }
 
 /// How many bridges there are and where to find them; nothing where none were laid.
@@ -260,9 +273,18 @@ pub(super) fn say_found(made: &MadeReport) {
         let p = narrowest.position_mm;
         say!("narrowest {what} {:.3} mm, at ({:.1}, {:.1}) mm", narrowest.width_mm, p.x, p.y);
     }
+    say_cost(made.cost.as_ref());
+    say_cuts(made.laser.as_ref());
     say_notes(&made.notes);
     for file in &made.files {
         say!("wrote {file}");
+    }
+}
+
+/// What the part takes of its material, if one was named.
+pub(super) fn say_cost(cost: Option<&CostReport>) {
+    if let Some((cost, material)) = cost.and_then(|cost| Some((cost, cost.material.as_ref()?))) {
+        say!("{:.1} mm3 of {}: {:.2} g", cost.volume_mm3, material.material.name, material.mass_g);
     }
 }
 
@@ -279,10 +301,11 @@ fn run_analyze(arguments: &AnalyzeArguments) -> Result<ExitCode, CliError> {
         arguments.output.iter().map(|path| output(path, Format::Svg)).collect::<Result<_, _>>()?;
     Output::check(outputs.iter().map(Output::target), &[&arguments.exemplar])?;
     refuse_json_beside(arguments.json, &outputs)?;
-    if let Some(stl) = outputs.iter().find(|o| o.format() == Format::Stl) {
+    let is_part = |format: Format| format.is_solid() || format == Format::Dxf;
+    if let Some(other) = outputs.iter().find(|o| is_part(o.format())) {
         return Err(CliError::Job(JobError::Option {
             option: "--output",
-            found: format!("{} is a solid", stl.target()),
+            found: format!("{} is a part to be made", other.target()),
             wanted: "an overlay is a picture: end the name in .svg or .png".to_owned(),
         }));
     }
@@ -302,7 +325,9 @@ fn run_analyze(arguments: &AnalyzeArguments) -> Result<ExitCode, CliError> {
     let analysis = Analysis::keeping(&exemplar, rule, &arguments.keep, &tolerances, &CostWeights::default())?;
     write_all(&outputs, |format| match format {
         Format::Png => analysis.overlay_png(OVERLAY_PIXELS).map_err(JobError::from),
-        Format::Svg | Format::Stl => Ok(analysis.overlay_svg().into_bytes()),
+        Format::Svg | Format::Dxf | Format::Stl | Format::Threemf | Format::Obj => {
+            Ok(analysis.overlay_svg().into_bytes())
+        }
     })?;
     if arguments.json {
         print_json(&analysis)?;

@@ -1,7 +1,8 @@
 //! Values of options as they are typed.
 
 use crate::domain::{CurveSpec, RectSize, parse_length_mm};
-use crate::job::{KeptRange, SlicingChoice, StitchMethod, Wanted, WantedError};
+use crate::fabricate::Bed;
+use crate::job::{KeptRange, SheetSize, SlicingChoice, StitchMethod, Wanted, WantedError};
 use crate::verify::Between;
 
 /// A length in millimetres: `12mm`, `1.2cm`, `0.5in`, `34pt`, `45px` or `12`.
@@ -29,9 +30,33 @@ pub(super) fn curve(text: &str) -> Result<CurveSpec, String> {
     text.parse::<CurveSpec>().map_err(|e| e.to_string())
 }
 
+/// A printer's bed: `220x220mm` or, with a height, `220x220x250mm`. A unit at the end is that of all.
+pub(super) fn bed(text: &str) -> Result<Bed, String> {
+    let wrong = |reason: String| format!("{reason}; give a bed as 220x220mm or 220x220x250mm");
+    // The x of px is no separator.
+    let number = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let unit = &text[number.len()..];
+    let side = |side: &str| match length(&format!("{side}{unit}")) {
+        Ok(mm) if (1.0..=100_000.0).contains(&mm) => Ok(mm),
+        Ok(mm) => Err(wrong(format!("{mm} mm is no side of a bed, which is from 1 mm to 100 m"))),
+        Err(reason) => Err(wrong(reason)),
+    };
+    let sides: Vec<f64> = number.split('x').map(side).collect::<Result<_, _>>()?;
+    match sides[..] {
+        [width_mm, depth_mm] => Ok(Bed { width_mm, depth_mm, height_mm: None }),
+        [width_mm, depth_mm, height] => Ok(Bed { width_mm, depth_mm, height_mm: Some(height) }),
+        _ => Err(wrong(format!("'{text}' has {} number(s)", sides.len()))),
+    }
+}
+
 /// A size: `120x80mm`.
 pub(super) fn size(text: &str) -> Result<RectSize, String> {
     text.parse::<RectSize>().map_err(|e| e.to_string())
+}
+
+/// The size of a plate: `300x200mm`.
+pub(super) fn sheet(text: &str) -> Result<SheetSize, String> {
+    size(text).map(|size| SheetSize { width_mm: size.width_mm(), height_mm: size.height_mm() })
 }
 
 /// How many of something: `None` when any number will do. (A name of its own, as the parser of arguments gives
@@ -98,6 +123,16 @@ mod tests {
         assert_eq!(kept("1cm..12mm"), Ok(KeptRange { from_mm: 10.0, to_mm: 12.0 }));
         for wrong in ["10mm", "5mm..3mm", "4..4", "..3mm", "1mm..x", "1mm...."] {
             assert!(kept(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn beds_have_two_sides_or_three() {
+        let two = Bed { width_mm: 220.0, depth_mm: 210.5, height_mm: None };
+        assert_eq!((bed("220x210.5"), bed("22x21.05cm")), (Ok(two), Ok(two)));
+        assert_eq!(bed("220x210.5x250mm"), Ok(Bed { height_mm: Some(250.0), ..two }));
+        for wrong in ["", "220", "220x", "1x2x3x4", "0x220", "-5x220mm", "axb", "220x220furlong", "nanx5"] {
+            assert!(bed(wrong).unwrap_err().contains("as 220x220mm"), "{wrong}");
         }
     }
 

@@ -36,6 +36,19 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<ExitCode, CliError> {
     let unjudged = |error| CliError::Unjudged { file: file.clone(), error };
     let extension = arguments.file.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
     let checked = match extension.as_str() {
+        "dxf" | "svg" if arguments.tiles && (extension == "dxf" || arguments.cut_lines) => {
+            return Err(only_drawings("--tiles", "tiles are joined", "--tiles"));
+        }
+        "dxf" => {
+            let report = verify::read_dxf(&bytes, tolerances.chord_mm() / 4.0).map_err(unjudged)?;
+            print_verified(arguments, &report, None, replayed(Counted::Cut(&report, "dxf"))?)?;
+            report.check(&expected)
+        }
+        "svg" if arguments.cut_lines || verify::has_cut_lines(&bytes) => {
+            let report = verify::read_cut_svg(&bytes, tolerances.chord_mm() / 4.0).map_err(unjudged)?;
+            print_verified(arguments, &report, None, replayed(Counted::Cut(&report, "svg"))?)?;
+            report.check(&expected)
+        }
         "svg" => {
             let report = verify::read_svg(&bytes, tolerances.chord_mm() / 4.0).map_err(unjudged)?;
             let tiling = arguments.tiles.then(|| verify::tiling(&report.region)).transpose();
@@ -44,13 +57,21 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<ExitCode, CliError> {
             tiling.map_err(|fault| CliError::Untiled { file: file.clone(), fault })?;
             report.check(&expected)
         }
-        "stl" if expected.min_feature_mm > 0.0 || expected.min_gap_mm > 0.0 => {
+        "stl" | "3mf" | "obj" if expected.min_feature_mm > 0.0 || expected.min_gap_mm > 0.0 => {
             return Err(only_drawings("--min-feature", "widths are measured", "--min-feature and --min-gap"));
         }
-        "stl" if arguments.tiles => return Err(only_drawings("--tiles", "tiles are joined", "--tiles")),
-        "stl" => {
-            let report = verify::read_stl(&bytes).map_err(unjudged)?;
-            print_verified(arguments, &report, None, replayed(Counted::Stl(&report))?)?;
+        "stl" | "3mf" | "obj" if arguments.tiles => {
+            return Err(only_drawings("--tiles", "tiles are joined", "--tiles"));
+        }
+        "stl" | "3mf" | "obj" => {
+            let read = match extension.as_str() {
+                "3mf" => verify::read_threemf(&bytes),
+                "obj" => verify::read_obj(&bytes),
+                _ => verify::read_stl(&bytes),
+            };
+            let report = read.map_err(unjudged)?;
+            let counted = Counted::Mesh { format: &extension, report: &report };
+            print_verified(arguments, &report, None, replayed(counted)?)?;
             report.check(&expected)
         }
         _ => return Err(CliError::UnknownKind { file }),
@@ -62,7 +83,7 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<ExitCode, CliError> {
 fn only_drawings(option: &'static str, what: &str, leave_out: &str) -> CliError {
     CliError::Job(JobError::Option {
         option,
-        found: format!("{what} on drawings, not on solids"),
+        found: format!("{what} on drawings, not on solids or cut lines"),
         wanted: format!("check the SVG of the same part, or leave out {leave_out}"),
     })
 }

@@ -13,6 +13,7 @@
 
 use std::fmt;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::curve::PlanarCurve;
@@ -30,7 +31,7 @@ const CELLS_PER_REACH: f64 = 16.0;
 const MAX_CELLS: f64 = 200_000.0;
 
 /// A side of a curve, seen in the direction of travel.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Side {
     /// v > 0.
@@ -59,7 +60,7 @@ impl fmt::Display for Side {
 }
 
 /// A stretch where the band is squeezed on the inner side of a bend.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Squeeze {
     /// The inner side.
     pub side: Side,

@@ -10,16 +10,17 @@ use glam::DVec2;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
-use super::outline::{Cubic, Outline, Segment, distance_to_edge};
+use super::outline::{Arc, Cubic, Outline, Segment, distance_to_edge};
 
-/// A straight line of an outline, or the chord of a part of a cubic.
+/// A straight line of an outline, or the chord of a part of an arc or cubic.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Piece {
     from: DVec2,
     to: DVec2,
     /// How far from the chord the outline, or a reader's chords, may run; zero for a line.
     radius: f64,
-    /// The inner control points of the cubic between `from` and `to`; for a line its ends.
+    /// The inner control points of the cubic between `from` and `to`; of an arc, points on its end tangents; of a line,
+    /// its ends.
     handles: [DVec2; 2],
 }
 
@@ -59,29 +60,53 @@ pub(super) fn pieces(outline: &Outline, tolerance: f64) -> Vec<Piece> {
         let end = segment.end();
         match *segment {
             Segment::Line(_) => pieces.push(Piece { from, to: end, radius: 0.0, handles: [from, end] }),
+            Segment::Arc(to, bulge) => {
+                let arc = Arc { from, to, bulge };
+                let radius = tolerance.min(arc.rise()).max(f64::MIN_POSITIVE);
+                let curve = |t: f64| (arc.at(t), arc.velocity(t));
+                add(&mut pieces, curve, arc.pieces_within(tolerance), radius, [from, end]);
+            }
             Segment::Cubic(a, b, _) => {
                 let cubic = Cubic([from, a, b, end]);
-                let n = cubic.pieces_within(tolerance);
-                let third = 1.0 / (3.0 * n as f64);
                 // No chord of a cubic leaves its control polygon, however coarse.
                 let flatness = distance_to_edge(a, from, end).max(distance_to_edge(b, from, end));
                 let radius = tolerance.min(flatness).max(f64::MIN_POSITIVE);
-                let at = |i: usize| {
-                    let t = i as f64 / n as f64;
-                    (if i == n { end } else { cubic.at(t) }, cubic.velocity(t) * third)
-                };
-                let mut here = at(0);
-                for i in 1..=n {
-                    let next = at(i);
-                    let handles = [here.0 + here.1, next.0 - next.1];
-                    pieces.push(Piece { from: here.0, to: next.0, radius, handles });
-                    here = next;
-                }
+                let curve = |t: f64| (cubic.at(t), cubic.velocity(t));
+                add(&mut pieces, curve, cubic.pieces_within(tolerance), radius, [from, end]);
             }
         }
         from = end;
     }
     pieces
+}
+
+/// Adds the pieces between `n` equal steps of a curve, which gives its point and derivative at a parameter.
+fn add(
+    pieces: &mut Vec<Piece>,
+    curve: impl Fn(f64) -> (DVec2, DVec2),
+    n: usize,
+    radius: f64,
+    [from, end]: [DVec2; 2],
+) {
+    let third = 1.0 / (3.0 * n as f64);
+    let at = |i: usize| {
+        let (p, velocity) = curve(i as f64 / n as f64);
+        let p = if i == 0 {
+            from
+        } else if i == n {
+            end
+        } else {
+            p
+        };
+        (p, velocity * third)
+    };
+    let mut here = at(0);
+    for i in 1..=n {
+        let next = at(i);
+        let handles = [here.0 + here.1, next.0 - next.1];
+        pieces.push(Piece { from: here.0, to: next.0, radius, handles });
+        here = next;
+    }
 }
 
 /// Points along the stretches where the pieces of closed outlines are not clear of each other, at most

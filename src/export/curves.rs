@@ -11,11 +11,12 @@ use glam::DVec2;
 
 use super::outline::{Cubic, Segment, distance_to_edge};
 use super::runs::{Run, THINNING, tangent_between};
+use crate::planar::Grid;
 
 /// The part of a tolerance that rounding to decimals may use.
-const ROUNDING: f64 = 0.02;
+pub(super) const ROUNDING: f64 = 0.02;
 /// What thinning and rounding leave to the fit.
-const FITTING: f64 = 1.0 - THINNING - 2.0 * ROUNDING;
+pub(super) const FITTING: f64 = 1.0 - THINNING - 2.0 * ROUNDING;
 /// Newton rounds. Fewer, and more segments are needed; more, and nothing is gained.
 const ROUNDS: usize = 6;
 /// A start so many times off the tolerance is not worth Newton steps.
@@ -34,8 +35,13 @@ pub(super) struct Rounding {
 }
 
 impl Rounding {
+    /// The rounding of points of a grid.
+    pub(super) fn on(grid: Grid) -> Self {
+        Self { exact: (-grid.step_mm().log10()).ceil() as i32 }
+    }
+
     /// `p` with the fewest decimals that move it by [`ROUNDING`] of the tolerance at most.
-    fn round(self, p: DVec2, tolerance: f64) -> DVec2 {
+    pub(super) fn round(self, p: DVec2, tolerance: f64) -> DVec2 {
         let decimals = self.decimals(tolerance);
         let scale = 10f64.powi(decimals);
         (p * scale).round() / scale
@@ -51,11 +57,7 @@ impl Rounding {
 /// The segments of an outline that stand for its runs, joined where the runs meet.
 pub(super) fn fitted(runs: &[Run], rounding: Rounding) -> (DVec2, Vec<Segment>) {
     let mut segments = Vec::new();
-    let joint = |i: usize| {
-        let (run, before) = (&runs[i % runs.len()], &runs[(i + runs.len() - 1) % runs.len()]);
-        let tolerance = run.tolerances[0].min(before.tolerances[before.tolerances.len() - 1]);
-        rounding.round(run.points[0], tolerance)
-    };
+    let joint = |i: usize| joint(runs, i, rounding);
     let start = joint(0);
     for (i, run) in runs.iter().enumerate() {
         if run.straight {
@@ -73,6 +75,13 @@ pub(super) fn fitted(runs: &[Run], rounding: Rounding) -> (DVec2, Vec<Segment>) 
         }
     }
     (start, segments)
+}
+
+/// Where run `i` begins, as the file has it; the one after the last is the first.
+pub(super) fn joint(runs: &[Run], i: usize, rounding: Rounding) -> DVec2 {
+    let (run, before) = (&runs[i % runs.len()], &runs[(i + runs.len() - 1) % runs.len()]);
+    let tolerance = run.tolerances[0].min(before.tolerances[before.tolerances.len() - 1]);
+    rounding.round(run.points[0], tolerance)
 }
 
 /// The absolute turn over all inner vertices up to each vertex, in radians.

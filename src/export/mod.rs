@@ -1,26 +1,45 @@
-//! Files: SVG, STL and PNG writers, and outputs that appear whole or not at all.
+//! Files: SVG, DXF, STL, 3MF, OBJ and PNG writers, and outputs that appear whole or not at all.
 //!
 //! A writer turns a region or a solid into bytes; [`stage`] and [`persist_all`] turn bytes into files. The
 //! two are apart so that what was written can be read again and verified under its temporary name, before
 //! anything exists under the name that was asked for.
 //!
-//! What this room promises to the next: the curves of an SVG lie within the chord tolerance of the region
-//! and have its components and holes; an STL has the solid's coordinates unrounded; the same input gives the
+//! What this room promises to the next: the curves of an SVG or DXF lie within the chord tolerance of the region
+//! and have its components and holes; STL, 3MF and OBJ have the solid's coordinates unrounded; the same input gives the
 //! same bytes. Excluded: standard output, and how shapes came to be.
 
+mod arcs;
 mod clearance;
 mod curves;
+mod cut_svg;
+mod cutlines;
+mod dxf;
+mod mesh;
+mod obj;
+mod order;
 mod outline;
+mod outlines;
 mod png;
 mod runs;
 mod staged;
 mod stl;
 mod svg;
+mod text;
+mod threemf;
+mod view;
 
-pub use png::{DEFAULT_PIXELS, png, png_with_bridges};
+pub use cut_svg::cut_svg;
+pub use cutlines::{CutLines, CutNumbers, Layer};
+pub use dxf::{DxfVersion, dxf};
+pub use mesh::MeshDocument;
+pub use obj::obj;
+pub use outlines::Curves;
+pub use png::{DEFAULT_PIXELS, Marks, png};
 pub use staged::{Staged, check_destination, persist_all, remove_staged, stage};
 pub use stl::stl;
 pub use svg::{SvgDocument, SvgOptions, svg};
+pub use threemf::threemf;
+pub use view::{DEFAULT_COLOUR, Painted, View, view_png};
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -57,6 +76,9 @@ pub enum ExportError {
     /// There is nothing to draw.
     #[error("there is nothing to draw: the region is empty")]
     Empty,
+    /// Curves that the release of a DXF cannot hold.
+    #[error("DXF of release 12 has no splines; use --curves arcs or polyline, or the release 2000")]
+    Splines,
     /// The picture could not be made: no memory, or ink narrower than can be drawn.
     #[error("the picture could not be drawn; a smaller size is likely to work")]
     Picture,

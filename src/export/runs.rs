@@ -45,7 +45,7 @@ impl Polygon {
     /// The runs in order, beginning at a corner if there is one. A polygon without corners and lines is one
     /// run, with one tangent at both its ends.
     pub(super) fn runs(&self) -> Vec<Run> {
-        let thinned = self.thinned();
+        let thinned = self.thinned(THINNING);
         let shape = Shape::new(&thinned);
         let n = thinned.points.len();
         let corners = shape.corners();
@@ -91,8 +91,8 @@ impl Polygon {
         runs
     }
 
-    /// The polygon without the vertices that a straight edge passes within [`THINNING`] of the tolerance.
-    fn thinned(&self) -> Self {
+    /// The polygon without the vertices that a straight edge passes within a `part` of the tolerance.
+    pub(super) fn thinned(&self, part: f64) -> Self {
         let n = self.points.len();
         let edge = |i: usize| self.points[(i + 1) % n] - self.points[i % n];
         let turn = |i: usize| edge(i + n - 1).angle_to(edge(i)).abs();
@@ -102,7 +102,7 @@ impl Polygon {
         while anchor < start + n {
             let origin = self.points[anchor % n];
             let tolerance = self.tolerances[anchor % n];
-            let slack = tolerance * THINNING;
+            let slack = tolerance * part;
             let mut end = anchor + 1;
             // The directions that pass all vertices so far closely enough, as an angle either side of a base.
             let base = edge(anchor);

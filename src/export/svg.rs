@@ -1,34 +1,17 @@
 //! The SVG writer: a region as compound paths of fitted curves, one for each component.
 //!
-//! Every contour is fitted by itself and stays within the chord tolerance of its polygon, but two contours
-//! that pass each other more closely than that may still cross. So the outlines are checked as they will
-//! stand in the file, rounded: as curves they must keep clear of each other, and flattened they must be a
-//! region. Where they fault, the tolerance of the polygon's edges nearby is divided, down to the exact edges.
-//! The file therefore has the region's components and holes, for every reader that flattens as finely as the
-//! check; specks stand in it point by point, for coarser readers too. Excluded: strokes, transforms, colours, text, and where on the page the ornament is put.
+//! The curves are those of [`super::outlines`], which keep the region's components and holes. Excluded: strokes, transforms, colours, text, and where on the page the ornament is put.
 
 use std::fmt::Write;
 
 use glam::DVec2;
 
 use super::ExportError;
-use super::clearance::{Piece, pieces, unclear};
-use super::curves::{Rounding, fitted};
-use super::outline::{Outline, Segment};
-use super::runs::Polygon;
-use crate::planar::{Contour, EdgeIndex, Region, RegionError};
-
-/// How finely outlines are flattened for the check, as a part of the tolerance. Larger, and curves that pass
-/// each other closely, but well, become lines; smaller, and fewer readers flatten as finely.
-const CHECK_FLATTENING: f64 = 0.03;
-/// What a fault does to the tolerance of the edges nearby.
-const TIGHTENING: f64 = 0.25;
-/// A tolerance below this part of the chord becomes zero, which keeps the edges themselves.
-const EXACT_BELOW: f64 = 1e-3;
-/// Contours of less area than so many squares of the chord are specks, of which curves could leave nothing.
-const SPECK: f64 = 4.0;
-/// Rounds of tightening before all edges are kept: each round finds at least one fault in each contour.
-const MAX_ROUNDS: usize = 60;
+use super::curves::Rounding;
+use super::outline::{Arc, Outline, Segment};
+use super::outlines::{Curves, outlines};
+use super::text::{Escaped, Number};
+use crate::planar::Region;
 
 /// How a region becomes an SVG file.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,25 +49,11 @@ pub struct SvgDocument {
 /// [`ExportError::Option`] for a page or chord that is no length, [`ExportError::OffPage`] when ink lies
 /// beyond the page.
 pub fn svg(region: &Region, options: &SvgOptions) -> Result<SvgDocument, ExportError> {
-    check(region, options)?;
-    let rounding = Rounding { exact: (-region.grid().step_mm().log10()).ceil() as i32 };
-    let outlines = outlines(region, options.chord_mm, rounding);
+    check(region.bounds_mm(), options)?;
+    let outlines = outlines(region, Curves::Spline, options.chord_mm);
 
-    // A page rounded to decimals of the chord keeps the decimals of what is subtracted from it.
-    let decimals = rounding.decimals(options.chord_mm);
-    let scale = 10f64.powi(decimals);
-    let page = [options.width_mm, options.height_mm].map(|mm| (mm * scale).ceil() / scale);
-    let (width, height) = (Number(page[0]), Number(page[1]));
-    let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
-    let _ = writeln!(
-        text,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}mm\" height=\"{height}mm\" viewBox=\"0 0 {width} {height}\">"
-    );
-    for (tag, content) in [("title", &options.title), ("desc", &options.description)] {
-        if let Some(content) = content {
-            let _ = writeln!(text, "<{tag}>{}</{tag}>", Escaped(content));
-        }
-    }
+    let page = rounded_page(options, Rounding::on(region.grid()).decimals(options.chord_mm));
+    let mut text = open_document(page, "", options);
     let mut outlines_left = outlines.as_slice();
     for part in region.parts() {
         let (own, rest) = outlines_left.split_at(1 + part.holes().len());
@@ -110,7 +79,31 @@ pub fn svg(region: &Region, options: &SvgOptions) -> Result<SvgDocument, ExportE
     })
 }
 
-fn check(region: &Region, options: &SvgOptions) -> Result<(), ExportError> {
+/// Width and height of the page, rounded up: a page with decimals of the chord keeps the decimals of what is subtracted
+/// from it.
+pub(super) fn rounded_page(options: &SvgOptions, decimals: i32) -> [f64; 2] {
+    let scale = 10f64.powi(decimals);
+    [options.width_mm, options.height_mm].map(|mm| (mm * scale).ceil() / scale)
+}
+
+/// The head of a document, with more attributes of the root element.
+pub(super) fn open_document(page: [f64; 2], attributes: &str, options: &SvgOptions) -> String {
+    let [width, height] = page.map(Number);
+    let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
+    let _ = writeln!(
+        text,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}mm\" height=\"{height}mm\" viewBox=\"0 0 {width} {height}\"{attributes}>"
+    );
+    for (tag, content) in [("title", &options.title), ("desc", &options.description)] {
+        if let Some(content) = content {
+            let _ = writeln!(text, "<{tag}>{}</{tag}>", Escaped(content));
+        }
+    }
+    text
+}
+
+/// Refuses a page or chord that is no length, and what lies beyond the page.
+pub(super) fn check(bounds_mm: Option<(DVec2, DVec2)>, options: &SvgOptions) -> Result<(), ExportError> {
     let lengths =
         [("page width", options.width_mm), ("page height", options.height_mm), ("chord", options.chord_mm)];
     for (name, found) in lengths {
@@ -120,7 +113,7 @@ fn check(region: &Region, options: &SvgOptions) -> Result<(), ExportError> {
     }
     let page = DVec2::new(options.width_mm, options.height_mm);
     let slack = options.chord_mm;
-    match region.bounds_mm() {
+    match bounds_mm {
         Some((low, high)) if low.min_element() < -slack || (high - page).max_element() > slack => {
             Err(ExportError::OffPage { low_mm: low, high_mm: high, page_mm: page })
         }
@@ -128,86 +121,8 @@ fn check(region: &Region, options: &SvgOptions) -> Result<(), ExportError> {
     }
 }
 
-/// Fitted outlines of all contours, in their order, that make a region of the same components and holes.
-fn outlines(region: &Region, chord_mm: f64, rounding: Rounding) -> Vec<Outline> {
-    let grid = region.grid();
-    let mut polygons: Vec<Polygon> = region
-        .contours()
-        .map(|c| {
-            let speck = c.area_mm2(grid).abs() < SPECK * chord_mm * chord_mm;
-            Polygon {
-                points: c.points().iter().map(|&p| grid.to_mm(p)).collect(),
-                tolerances: vec![if speck { 0.0 } else { chord_mm }; c.points().len()],
-            }
-        })
-        .collect();
-    let fit = |polygon: &Polygon| {
-        let (start, segments) = fitted(&polygon.runs(), rounding);
-        Outline { start, segments }
-    };
-    let mut outlines: Vec<Outline> = polygons.iter().map(fit).collect();
-    let mut index = None;
-    for round in 0.. {
-        let faults = faults(region, &outlines, chord_mm);
-        if faults.is_empty() || round > MAX_ROUNDS {
-            break;
-        }
-        let mut concerned = vec![false; polygons.len()];
-        let edges = index.get_or_insert_with(|| EdgeIndex::new(region));
-        for &fault in &faults {
-            // An outline at the fault has its polygon within the tolerance of it.
-            for edge in edges.within(fault, 1.5 * chord_mm) {
-                let tolerance = &mut polygons[edge.contour].tolerances[edge.edge];
-                if *tolerance > 0.0 {
-                    *tolerance *= TIGHTENING;
-                    if *tolerance < EXACT_BELOW * chord_mm {
-                        *tolerance = 0.0;
-                    }
-                    concerned[edge.contour] = true;
-                }
-            }
-        }
-        if round == MAX_ROUNDS || !concerned.contains(&true) {
-            for polygon in &mut polygons {
-                polygon.tolerances.fill(0.0);
-            }
-            concerned.fill(true);
-        }
-        for i in (0..polygons.len()).filter(|&i| concerned[i]) {
-            outlines[i] = fit(&polygons[i]);
-        }
-    }
-    outlines
-}
-
-/// Where the outlines are not a region of the same components and holes.
-fn faults(region: &Region, outlines: &[Outline], chord_mm: f64) -> Vec<DVec2> {
-    let grid = region.grid();
-    let flattened: Vec<_> = outlines.iter().map(|o| pieces(o, CHECK_FLATTENING * chord_mm)).collect();
-    let mut faults = unclear(&flattened, chord_mm);
-    let mut contours = Vec::with_capacity(outlines.len());
-    for pieces in &flattened {
-        // Points beyond the grid's extent, and contours that lost their area, are faults like a crossing.
-        let snapped: Result<Vec<_>, _> = pieces.iter().map(|p| grid.snap(p.from())).collect();
-        match snapped.ok().and_then(Contour::new) {
-            Some(contour) => contours.push(contour),
-            None => faults.extend(pieces.iter().map(Piece::from)),
-        }
-    }
-    if !faults.is_empty() {
-        return faults;
-    }
-    match Region::from_contours(grid, contours) {
-        Ok(found) if (found.components(), found.holes()) == (region.components(), region.holes()) => {
-            Vec::new()
-        }
-        Ok(_) => outlines.iter().map(|o| o.start).collect(),
-        Err(RegionError::Invalid { faults }) => faults.iter().map(|f| f.position_mm()).collect(),
-        Err(RegionError::Grid(_)) => outlines.iter().map(|o| o.start).collect(),
-    }
-}
-
-fn write_outline(text: &mut String, outline: &Outline, height: f64) {
+/// Adds the outline to path data, y down from `height`.
+pub(super) fn write_outline(text: &mut String, outline: &Outline, height: f64) {
     let flip = |p: DVec2| (Number(p.x), Number(height - p.y));
     let (x, y) = flip(outline.start);
     let _ = write!(text, "M{x} {y}");
@@ -219,6 +134,14 @@ fn write_outline(text: &mut String, outline: &Outline, height: f64) {
                 let (x, y) = flip(end);
                 let _ = write!(text, "L{x} {y}");
             }
+            Segment::Arc(to, bulge) => {
+                let from = outline.segments[(i + outline.segments.len() - 1) % outline.segments.len()].end();
+                let radius = Number(Arc { from, to, bulge }.radius());
+                // What turns to the left with y up does so counter-clockwise, which is against SVG's angles.
+                let sweep = u8::from(bulge < 0.0);
+                let (x, y) = flip(to);
+                let _ = write!(text, "A{radius} {radius} 0 0 {sweep} {x} {y}");
+            }
             Segment::Cubic(a, b, end) => {
                 let ((ax, ay), (bx, by), (x, y)) = (flip(a), flip(b), flip(end));
                 let _ = write!(text, "C{ax} {ay} {bx} {by} {x} {y}");
@@ -228,43 +151,12 @@ fn write_outline(text: &mut String, outline: &Outline, height: f64) {
     text.push('Z');
 }
 
-/// A number with the decimals it has: no trailing zeros, no exponent, no minus before zero.
-struct Number(f64);
-
-impl std::fmt::Display for Number {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        // Twelve decimals are more than a rounded coordinate has, and fewer than show its binary tail.
-        let digits = format!("{:.12}", self.0);
-        let digits = digits.trim_end_matches('0').trim_end_matches('.');
-        f.write_str(if digits == "-0" { "0" } else { digits })
-    }
-}
-
-/// Text as XML content; characters that XML cannot hold become U+FFFD.
-struct Escaped<'a>(&'a str);
-
-impl std::fmt::Display for Escaped<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        for c in self.0.chars() {
-            match c {
-                '&' => f.write_str("&amp;")?,
-                '<' => f.write_str("&lt;")?,
-                '>' => f.write_str("&gt;")?,
-                '\t' | '\n' => f.write_char(c)?,
-                '\0'..='\x1f' | '\x7f' | '\u{fffe}' | '\u{ffff}' => f.write_char('\u{fffd}')?,
-                _ => f.write_char(c)?,
-            }
-        }
-        Ok(())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::planar::{FillRule, Grid};
+    use crate::planar::{EdgeIndex, FillRule, Grid};
 
     const CHORD: f64 = 0.01;
 
@@ -442,11 +334,5 @@ mod tests {
             let error = svg(&square, &SvgOptions { chord_mm, ..options() }).unwrap_err();
             assert!(error.to_string().starts_with("chord is "), "{error}");
         }
-    }
-
-    #[test]
-    fn numbers_are_short() {
-        let texts = [0.0, -0.0, -1e-14, 1.5, -2.25, 100.0, 0.1 + 0.2].map(|x| Number(x).to_string());
-        assert_eq!(texts, ["0", "0", "0", "1.5", "-2.25", "100", "0.3"]);
     }
 }

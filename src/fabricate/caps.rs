@@ -12,7 +12,7 @@ use i_triangle::i_overlay::core::overlay::IntOverlayOptions;
 use i_triangle::i_overlay::i_float::int::point::IntPoint;
 use i_triangle::int::custom::IntCustomTriangulatable;
 use i_triangle::int::validation::Validation;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 
 use crate::planar::{GridPoint, Part};
 
@@ -44,38 +44,64 @@ pub(super) fn triangulate(part: &Part) -> Result<Vec<[u32; 3]>, &'static str> {
 }
 
 /// Whether `triangles` are a triangulation of `part` without new or lost vertices: all of positive area,
-/// of the right number and total area, meeting in pairs along inner edges, with the part's own edges left
-/// over. Exact.
+/// of the right number and total area, meeting in pairs along inner edges, and alone along the part's own.
+/// Exact.
 fn check(part: &Part, vertices: &[GridPoint], triangles: &[[u32; 3]]) -> Result<(), &'static str> {
     if triangles.len() + 2 != vertices.len() + 2 * part.holes().len() {
         return Err("a wrong number of triangles");
     }
     let mut area = 0;
-    let mut unpaired = FxHashSet::default();
+    let mut sides = Vec::with_capacity(3 * triangles.len() + vertices.len());
     for t in triangles {
         let doubled = doubled_area(t.map(|i| vertices[i as usize]));
         if doubled <= 0 {
             return Err("a triangle without area");
         }
         area += doubled;
-        for (from, to) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
-            if !unpaired.remove(&(to, from)) && !unpaired.insert((from, to)) {
-                return Err("two triangles on one side of an edge");
-            }
-        }
+        sides.extend([(t[0], t[1]), (t[1], t[2]), (t[2], t[0])]);
     }
     if area != part.contours().map(|c| c.doubled_area()).sum::<i128>() {
         return Err("a wrong total area");
     }
+    // Beyond its own edges the part has a neighbour that is not there.
     let mut start = 0;
     for contour in part.contours() {
         let n = contour.points().len() as u32;
-        if !(0..n).all(|i| unpaired.remove(&(start + i, start + (i + 1) % n))) {
-            return Err("a lost boundary edge");
-        }
+        sides.extend((0..n).map(|i| (start + (i + 1) % n, start + i)));
         start += n;
     }
-    if unpaired.is_empty() { Ok(()) } else { Err("an open inner edge") }
+    check_pairs(vertices.len(), &sides)
+}
+
+/// Whether every edge is used once in each direction. Edges are gathered by their lower end, as a table of all would take
+/// longer than the triangulation.
+fn check_pairs(vertices: usize, sides: &[(u32, u32)]) -> Result<(), &'static str> {
+    let lower = |&(from, to): &(u32, u32)| from.min(to) as usize;
+    let mut begin = vec![0usize; vertices + 1];
+    sides.iter().for_each(|side| begin[lower(side) + 1] += 1);
+    for i in 0..vertices {
+        begin[i + 1] += begin[i];
+    }
+    let mut next = begin.clone();
+    // The higher end, and whether the edge runs towards it.
+    let mut uses = vec![(0u32, false); sides.len()];
+    for side @ &(from, to) in sides {
+        let place = &mut next[lower(side)];
+        uses[*place] = (from.max(to), from < to);
+        *place += 1;
+    }
+    for range in begin.windows(2) {
+        let fan = &mut uses[range[0]..range[1]];
+        fan.sort_unstable();
+        for edge in fan.chunk_by(|a, b| a.0 == b.0) {
+            match edge {
+                [(_, false), (_, true)] => {}
+                [_] => return Err("an open edge"),
+                _ => return Err("two triangles on one side of an edge"),
+            }
+        }
+    }
+    Ok(())
 }
 
 fn doubled_area([a, b, c]: [GridPoint; 3]) -> i128 {

@@ -6,18 +6,43 @@
 //! vertices. The solid is therefore closed by construction and writing it changes nothing: a region of b0
 //! components and b1 holes becomes b0 shells of total genus b1.
 //!
-//! Before that, bridges may give the region other counts ([`bridge()`]).
+//! Before that, bridges may give the region other counts ([`bridge()`]), and what is too thin or too narrow for a machine
+//! ([`Process`]) may be mended ([`enforce()`]). For a beam instead of a printer, contours make room for the kerf
+//! ([`compensated`]), and the part lies on a plate or is carved out of it ([`on_sheet`], [`carved`]).
 //!
-//! Excluded: files, curved fronts, kerf. Nothing here knows how the region came to be.
+//! Walls may be bevelled or sloped ([`raise()`]), the number of triangles limited ([`raise_within`]), and the part turned
+//! to fit a printer ([`Bed`]).
+//!
+//! Excluded: files, curved fronts. Nothing here knows how the region came to be.
 
+mod bed;
 mod bridge;
 mod caps;
+mod enforce;
+mod inset;
+mod kerf;
+mod limit;
+mod material;
+mod process;
+mod profile;
+mod raise;
+mod sheet;
+mod simplify;
 mod snap;
 mod solid;
 
+pub use bed::Bed;
 pub use bridge::{Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts, bridge};
+pub use enforce::{Change, EnforceError, EnforceOptions, Enforced, TIP, enforce};
+pub use kerf::{KerfError, check_kerf, compensated};
+pub use limit::{Limited, raise_within};
+pub use material::{Material, MaterialReport};
+pub use process::{Process, Workshop, WorkshopError, table as process_table};
+pub use profile::Profile;
+pub use raise::raise;
+pub use sheet::{Carved, FallenPiece, SheetError, SheetSize, carved, on_sheet, plate};
 pub use snap::snapped_to_f32;
-pub use solid::{Solid, extrude};
+pub use solid::{Shell, Solid, extrude};
 
 use glam::DVec2;
 use thiserror::Error;
@@ -35,6 +60,67 @@ pub enum FabricateError {
     Thickness {
         /// What was given.
         found_mm: f64,
+    },
+    /// The chamfer is not a usable length.
+    #[error(
+        "the chamfer is {found_mm} mm; it must be at least 0.01 mm and less than half of the thickness of \
+         {thickness_mm} mm"
+    )]
+    Chamfer {
+        /// What was given.
+        found_mm: f64,
+        /// The thickness of the solid.
+        thickness_mm: f64,
+    },
+    /// The taper is not a usable angle.
+    #[error("the taper is {found_deg} degrees; it must be more than 0 and less than 45")]
+    Taper {
+        /// What was given.
+        found_deg: f64,
+    },
+    /// Walls cannot go in as far as they are to without changing components or holes.
+    #[error(
+        "near ({:.3}, {:.3}) mm the ink is too narrow for walls that go in by {inset_mm:.3} mm: components or \
+         holes would change; {remedy}", position_mm.x, position_mm.y
+    )]
+    Inset {
+        /// Where, in millimetres.
+        position_mm: DVec2,
+        /// How far the walls are to go in.
+        inset_mm: f64,
+        /// What would do.
+        remedy: String,
+    },
+    /// A solid cannot keep the chord error with so few triangles.
+    #[error(
+        "the solid has {found} triangles at least within a chord error of {chord_mm} mm; at most {most} are \
+         allowed; {remedy}"
+    )]
+    TooManyTriangles {
+        /// The fewest that were found.
+        found: usize,
+        /// How many are allowed.
+        most: usize,
+        /// The chord error that was asked for.
+        chord_mm: f64,
+        /// What would do.
+        remedy: String,
+    },
+    /// The part does not fit the printer.
+    #[error(
+        "the part is {:.2} x {:.2} x {:.2} mm and does not fit a bed of {}, not even turned by {turn_deg:.1} \
+         degrees to {:.2} x {:.2} mm; make it smaller, or give a larger bed",
+        part_mm[0], part_mm[1], part_mm[2], room(bed), turned_mm[0], turned_mm[1]
+    )]
+    Bed {
+        /// Width, depth and height as it is.
+        part_mm: [f64; 3],
+        /// The turn that comes nearest to fitting.
+        turn_deg: f64,
+        /// Width and depth when it is turned.
+        turned_mm: [f64; 2],
+        /// The bed.
+        bed: Bed,
     },
     /// The region's extent does not fit the grid of 32-bit floats.
     #[error(transparent)]
@@ -71,4 +157,9 @@ pub enum FabricateError {
         /// What is wrong with the triangles.
         found: &'static str,
     },
+}
+
+fn room(bed: &Bed) -> String {
+    let height = bed.height_mm.map_or_else(String::new, |height| format!(" x {height}"));
+    format!("{} x {}{height} mm", bed.width_mm, bed.depth_mm)
 }

@@ -12,6 +12,9 @@ const YIELD_STEPS: f64 = 4.0;
 /// (this is 0.06 micrometres at 64 mm).
 const SHORTEST_EDGE_STEPS: i64 = 16;
 
+/// Room for the yield, which may pass the power of two that the extent just fits: a part of the extent.
+pub(super) const YIELD_ROOM: f64 = 1e-6;
+
 /// `region` with every coordinate exact in `f32` and the same components and holes.
 ///
 /// A region that is exact already is returned as it is. Otherwise every vertex goes to the nearest point of
@@ -27,9 +30,16 @@ pub fn snapped_to_f32(region: &Region) -> Result<Region, FabricateError> {
     if is_exact(region) {
         return Ok(region.clone());
     }
-    // Room for the yield, which may pass the power of two that the extent just fits.
     let extent = low.abs().max(high.abs()).max_element();
-    let grid = Grid::exact_in_f32(extent * (1.0 + 1e-6))?;
+    snapped_to(region, Grid::exact_in_f32(extent * (1.0 + YIELD_ROOM))?)
+}
+
+/// `region` on a coarser grid, with the same components and holes, as [`snapped_to_f32`] does it. The grid is for an
+/// extent that is larger by [`YIELD_ROOM`].
+///
+/// # Errors
+/// [`FabricateError::TooFine`], [`FabricateError::Grid`].
+pub(super) fn snapped_to(region: &Region, grid: Grid) -> Result<Region, FabricateError> {
     let failed = match snap(region, grid)? {
         Attempt::Kept(snapped) => return Ok(snapped),
         Attempt::Changed(failed) => failed,
@@ -108,7 +118,7 @@ fn snapped(contour: &Contour, from: Grid, to: Grid, shortest: i64) -> Result<Vec
     Ok(path)
 }
 
-fn same_counts(a: &Region, b: &Region) -> bool {
+pub(super) fn same_counts(a: &Region, b: &Region) -> bool {
     (a.components(), a.holes()) == (b.components(), b.holes())
 }
 

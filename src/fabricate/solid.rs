@@ -3,7 +3,7 @@
 use super::FabricateError;
 use super::caps;
 use super::snap::snapped_to_f32;
-use crate::planar::{Grid, Region};
+use crate::planar::{Grid, Part, Region};
 
 /// A closed solid: facets are counter-clockwise seen from outside, every edge has exactly two facets, and
 /// every vertex belongs to one shell. Coordinates are millimetres and exact, not rounded: they are what the
@@ -12,9 +12,73 @@ use crate::planar::{Grid, Region};
 pub struct Solid {
     vertices: Vec<[f32; 3]>,
     triangles: Vec<[u32; 3]>,
+    /// Past the last vertex and the last triangle of each shell.
+    ends: Vec<(usize, usize)>,
+}
+
+/// One closed surface of a solid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shell<'a> {
+    /// Its vertices, which no other shell has.
+    pub vertices: &'a [[f32; 3]],
+    /// The number of the first of them in the solid.
+    pub first_vertex: u32,
+    /// Its facets, by the numbers that vertices have in the solid.
+    pub triangles: &'a [[u32; 3]],
 }
 
 impl Solid {
+    /// No shell, with room for as many vertices and triangles.
+    pub(super) fn with_capacity(vertices: usize, triangles: usize) -> Self {
+        let (vertices, triangles) = (Vec::with_capacity(vertices), Vec::with_capacity(triangles));
+        Self { vertices, triangles, ends: Vec::new() }
+    }
+
+    /// Adds vertices to the shell that is being built; the number of the first of them.
+    pub(super) fn add_vertices(&mut self, vertices: impl IntoIterator<Item = [f32; 3]>) -> u32 {
+        let first = self.vertices.len() as u32;
+        self.vertices.extend(vertices);
+        first
+    }
+
+    /// Adds facets to the shell that is being built.
+    pub(super) fn add_triangles(&mut self, triangles: impl IntoIterator<Item = [u32; 3]>) {
+        self.triangles.extend(triangles);
+    }
+
+    /// Adds the upright wall between two equal sections of a part, of which the vertices begin at `bottom` and `top`.
+    pub(super) fn add_wall(&mut self, part: &Part, bottom: u32, top: u32) {
+        let mut start = 0;
+        for contour in part.contours() {
+            let n = contour.points().len() as u32;
+            for i in 0..n {
+                // The ink is on the left of i -> j, so the outside is on its right.
+                let (i, j) = (start + i, start + (i + 1) % n);
+                self.triangles.push([bottom + i, bottom + j, top + j]);
+                self.triangles.push([bottom + i, top + j, top + i]);
+            }
+            start += n;
+        }
+    }
+
+    /// Ends the shell that is being built.
+    pub(super) fn end_shell(&mut self) {
+        self.ends.push((self.vertices.len(), self.triangles.len()));
+    }
+
+    /// The shells, one for each component of what was made solid, in its order.
+    pub fn shells(&self) -> impl ExactSizeIterator<Item = Shell<'_>> {
+        (0..self.ends.len()).map(|i| {
+            let (vertex, triangle) = if i == 0 { (0, 0) } else { self.ends[i - 1] };
+            let (vertices_end, triangles_end) = self.ends[i];
+            Shell {
+                vertices: &self.vertices[vertex..vertices_end],
+                first_vertex: vertex as u32,
+                triangles: &self.triangles[triangle..triangles_end],
+            }
+        })
+    }
+
     /// The vertices (x, y, z) in millimetres.
     pub fn vertices(&self) -> &[[f32; 3]] {
         &self.vertices
@@ -55,40 +119,25 @@ pub fn extrude(region: &Region, thickness_mm: f64) -> Result<Solid, FabricateErr
     let region = snapped_to_f32(region)?;
     let grid = region.grid();
     let count = region.vertices();
-    let mut solid =
-        Solid { vertices: Vec::with_capacity(2 * count), triangles: Vec::with_capacity(4 * count) };
+    let mut solid = Solid::with_capacity(2 * count, 4 * count);
     for part in region.parts() {
-        let outline = part.contours().flat_map(|c| c.points()).map(|&p| grid.to_mm(p));
         let cap = caps::triangulate(part).map_err(|found| FabricateError::Triangulation {
             position_mm: grid.to_mm(part.exterior().points()[0]),
             found,
         })?;
-        let bottom = solid.vertices.len() as u32;
-        solid.vertices.extend(outline.map(|p| [p.x as f32, p.y as f32, 0.0]));
-        let top = solid.vertices.len() as u32;
-        let lifted: Vec<[f32; 3]> =
-            solid.vertices[bottom as usize..].iter().map(|p| [p[0], p[1], thickness_mm as f32]).collect();
-        solid.vertices.extend(lifted);
-
-        solid.triangles.extend(cap.iter().map(|&[a, b, c]| [bottom + a, bottom + c, bottom + b]));
-        solid.triangles.extend(cap.iter().map(|&[a, b, c]| [top + a, top + b, top + c]));
-        let mut start = 0;
-        for contour in part.contours() {
-            let n = contour.points().len() as u32;
-            for i in 0..n {
-                // The ink is on the left of i -> j, so the outside is on its right.
-                let (i, j) = (start + i, start + (i + 1) % n);
-                solid.triangles.push([bottom + i, bottom + j, top + j]);
-                solid.triangles.push([bottom + i, top + j, top + i]);
-            }
-            start += n;
-        }
+        let outline = || part.contours().flat_map(|c| c.points()).map(|&p| grid.to_mm(p));
+        let bottom = solid.add_vertices(outline().map(|p| [p.x as f32, p.y as f32, 0.0]));
+        let top = solid.add_vertices(outline().map(|p| [p.x as f32, p.y as f32, thickness_mm as f32]));
+        solid.add_triangles(cap.iter().map(|&[a, b, c]| [bottom + a, bottom + c, bottom + b]));
+        solid.add_triangles(cap.iter().map(|t| t.map(|v| top + v)));
+        solid.add_wall(part, bottom, top);
+        solid.end_shell();
     }
     Ok(solid)
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use std::collections::HashMap;
 
     use glam::DVec2;
@@ -98,7 +147,7 @@ mod tests {
     use crate::planar::{FillRule, GridPoint};
 
     /// (shells, total genus) of a solid, after checking that it is a closed oriented manifold.
-    fn shells_and_genus(solid: &Solid) -> (usize, usize) {
+    pub(in super::super) fn shells_and_genus(solid: &Solid) -> (usize, usize) {
         let mut edges: HashMap<(u32, u32), usize> = HashMap::new();
         let mut shell: Vec<usize> = (0..solid.vertices().len()).collect();
         fn root(shell: &mut [usize], mut i: usize) -> usize {
@@ -121,7 +170,7 @@ mod tests {
         (shells, usize::try_from(shells as i64 - euler / 2).unwrap())
     }
 
-    fn rectangles(boxes: &[(f64, f64, f64, f64)]) -> Region {
+    pub(in super::super) fn rectangles(boxes: &[(f64, f64, f64, f64)]) -> Region {
         let grid = Grid::for_extent(200.0).unwrap();
         let paths: Vec<Vec<GridPoint>> = boxes
             .iter()
@@ -141,6 +190,28 @@ mod tests {
         assert_eq!(shells_and_genus(&solid), (1, 1));
         assert_eq!(solid.volume_mm3(), 84.0 * 2.5);
         assert_eq!(solid.vertices().len(), 16);
+    }
+
+    #[test]
+    fn flat_areas_have_no_more_facets_than_their_outline_asks_for() {
+        let frame = rectangles(&[(0.0, 0.0, 90.0, 90.0), (2.0, 2.0, 40.0, 40.0), (50.0, 50.0, 9.0, 9.0)]);
+        // Of each cap V − 2 and two more for each hole; two facets stand on each edge of the outline.
+        let (vertices, holes) = (12, 2);
+        let cap = vertices - 2 + 2 * holes;
+        let solid = extrude(&frame, 2.0).unwrap();
+        assert_eq!(solid.triangles().len(), 2 * cap + 2 * vertices);
+        assert_eq!(solid.vertices().len(), 2 * vertices);
+    }
+
+    #[test]
+    fn each_shell_has_its_own_vertices() {
+        let solid = extrude(&rectangles(&[(0.0, 0.0, 1.0, 1.0), (3.0, 0.0, 2.0, 2.0)]), 1.0).unwrap();
+        assert_eq!(solid.shells().len(), 2);
+        for shell in solid.shells() {
+            assert_eq!((shell.vertices.len(), shell.triangles.len()), (8, 12));
+            let own = shell.first_vertex..shell.first_vertex + 8;
+            assert!(shell.triangles.iter().flatten().all(|v| own.contains(v)));
+        }
     }
 
     #[test]
@@ -175,7 +246,7 @@ mod tests {
     }
 
     /// Coordinates on a coarse lattice meet, overlap and line up all the time; free ones never do.
-    fn region() -> impl Strategy<Value = Region> {
+    pub(in super::super) fn region() -> impl Strategy<Value = Region> {
         (proptest::collection::vec(polygon(), 1..12), prop::bool::ANY).prop_map(|(polygons, lattice)| {
             let grid = Grid::for_extent(200.0).unwrap();
             let place = |&(x, y): &(f64, f64)| {

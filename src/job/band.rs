@@ -11,17 +11,21 @@ use super::choice::Choice;
 use super::cut::{Cut, read_exemplar, slice};
 use super::describe::describe;
 use super::error::JobError;
-use super::extrude::{check_stl, file_name, name};
+use super::extrude::{file_name, name};
+use super::laser::Cutting;
+use super::making::{self, CostReport};
 use super::output::{Format, Output, Pending, Target, persist};
 use super::part::{Part, PartError};
+use super::picture::Pictured;
 use super::plan::Plan;
+use super::print::{self, check_mesh};
 use super::report::{BandReport, InputReport};
 use super::stage::{Clock, Stage};
 use super::ways::{Runs, ways, weighed, weighed_note};
 use crate::domain::{BandMap, CurveSpec, PlanarCurve};
 use crate::exemplar::{Limits, read_path};
-use crate::export::{self, SvgDocument, SvgOptions};
-use crate::fabricate::{self, Counts};
+use crate::export::{self, MeshDocument, SvgDocument, SvgOptions};
+use crate::fabricate::{self, Counts, Solid};
 use crate::fit::{FitOptions, Outline, Prepared, Sides, StitchMethod};
 use crate::planar::Region;
 use crate::topology::Topology;
@@ -151,6 +155,7 @@ impl Band {
                 let inside = bridging::inside(map).map(|p| p + band.part.shift_mm);
                 clock.time(Stage::Bridge, || band.lay_bridges(width_mm, inside))?;
             }
+            band.enforce(clock)?;
             // A drawing that does not pass is left for `deliver` to tell of, which knows the name of its file.
             if let Err(JobError::Mismatch { mismatch, .. }) = band.pass(clock) {
                 is_fine_enough &= !matches!(mismatch, Mismatch::Components { .. } | Mismatch::Holes { .. });
@@ -223,6 +228,22 @@ impl Band {
         Ok(())
     }
 
+    /// Thickens what is too thin and widens what is too narrow, if that was asked for.
+    pub(super) fn enforce(&mut self, clock: &mut Clock<'_>) -> Result<(), JobError> {
+        if !self.job.options.enforce {
+            return Ok(());
+        }
+        let made =
+            clock.time(Stage::Enforce, || making::enforced(&self.part.region, &self.job.tolerances))?;
+        let Some((region, enforced)) = made else { return Ok(()) };
+        self.part.region = fabricate::snapped_to_f32(&region)?;
+        let made = &mut self.report.made;
+        made.notes.push(enforced.note());
+        (made.area_mm2, made.vertices) = (self.part.region.area_mm2(), self.part.region.vertices());
+        made.enforced = Some(enforced);
+        Ok(())
+    }
+
     /// The part in millimetres, y up from the lower left corner of its page.
     pub fn region(&self) -> &Region {
         &self.part.region
@@ -273,17 +294,37 @@ impl Band {
             }
             error => error,
         })?;
-        let mut pending = Vec::new();
+        let laser = &self.job.options.laser;
+        let mut cutting = match laser.is_needed(outputs) {
+            true => Some(clock.time(Stage::CutLines, || self.cutting())?),
+            false => None,
+        };
+        let (mut pending, mut raised) = (Vec::new(), None);
+        report.made.narrow_places =
+            clock.time(Stage::Verify, || making::worst_places(&found.region, &self.job.tolerances));
         let mut digests = Vec::new();
+        let mut sizes = Vec::new();
         let mut digest = |output: &Output, bytes: &[u8]| {
             let file = name(output.target()).display().to_string();
             digests.push(FileDigest { file, format: output.format().name(), sha256: sha256(bytes) });
         };
         for output in outputs {
+            if let Some(cutting) = cutting.as_mut().filter(|_| laser.makes(output.format())) {
+                let (item, bytes) = cutting.write(output, &mut clock)?;
+                sizes.push(bytes.len());
+                // A certificate counts the pattern, and not what is left around it.
+                if laser.cuts(output.format()) && !laser.carve {
+                    digest(output, &bytes);
+                }
+                pending.push(item);
+                continue;
+            }
             let item = match output.format() {
+                Format::Dxf => unreachable!("a DXF has cut lines"),
                 Format::Svg => {
                     report.made.svg_segments = Some([drawing.lines, drawing.cubics]);
                     digest(output, drawing.text.as_bytes());
+                    sizes.push(drawing.text.len());
                     let item = Pending::new(output.target(), drawing.text.clone().into_bytes())?;
                     if clock.time(Stage::Verify, || item.read_again())? != drawing.text.as_bytes() {
                         let source = std::io::Error::other("the file differs from what was written to it");
@@ -292,11 +333,15 @@ impl Band {
                     }
                     item
                 }
-                Format::Stl => {
-                    let bytes = clock.time(Stage::Stl, || self.stl())?;
+                format @ (Format::Stl | Format::Threemf | Format::Obj) => {
+                    let bytes = clock.time(Stage::Stl, || {
+                        let solid = print::raised(&mut raised, || self.solid(&mut report.made.notes))?;
+                        print::mesh(format, solid, &self.document())
+                    })?;
                     digest(output, &bytes);
+                    sizes.push(bytes.len());
                     let item = Pending::new(output.target(), bytes)?;
-                    let solid = clock.time(Stage::Verify, || check_stl(output.target(), &item, &expected))?;
+                    let solid = clock.time(Stage::Verify, || check_mesh(output, &item, &expected))?;
                     report.made.triangles = Some(solid.triangles);
                     report.made.shells = Some(solid.shells.len());
                     report.made.genus = Some(solid.genus);
@@ -305,10 +350,18 @@ impl Band {
                 }
                 Format::Png => {
                     let bridges = self.report.bridges.as_ref().map_or(&[][..], |b| &b.bridges);
+                    let part = Pictured {
+                        region: &self.part.region,
+                        bridges,
+                        seams_mm: &self.part.seams_mm,
+                        narrow_mm: &report.made.narrow_places.places_mm(),
+                    };
                     let picture = clock.time(Stage::Png, || {
-                        export::png_with_bridges(&self.part.region, bridges, export::DEFAULT_PIXELS)
+                        let make = || self.solid(&mut report.made.notes);
+                        self.job.options.picture.png(&part, || print::raised(&mut raised, make))
                     })?;
                     digest(output, &picture);
+                    sizes.push(picture.len());
                     Pending::new(output.target(), picture)?
                 }
             };
@@ -320,11 +373,16 @@ impl Band {
                 narrowest.width_mm
             ));
         }
+        report.made.laser = cutting.map(|cutting| cutting.report);
+        report.made.bytes = sizes;
         report.made.certificate.seal([found.components, found.holes], digests);
         report.components = found.components;
         report.holes = found.holes;
         report.made.min_feature = found.min_feature;
         report.made.min_gap = found.min_gap;
+        let options = &self.job.options;
+        report.made.cost =
+            Some(CostReport::new(&self.part.region, options.thickness_mm, options.material.as_ref()));
         report.made.files = outputs.iter().map(|o| name(o.target()).display().to_string()).collect();
         report.made.times.extend(clock.times);
         Ok((report, pending))
@@ -368,13 +426,37 @@ impl Band {
         Ok(export::svg(&self.part.region, &options)?)
     }
 
+    /// The part as cut lines.
+    fn cutting(&self) -> Result<Cutting, JobError> {
+        let chord_mm = self.job.tolerances.chord_mm();
+        let of = format!("{} of {}", self.report.generator, file_name(&self.job.options.exemplar));
+        let laser = &self.job.options.laser;
+        Cutting::new(laser, &self.part.region, self.part.page_mm, [chord_mm, chord_mm * SVG_SHARE], of)
+    }
+
     /// The part as a binary STL solid.
     ///
     /// # Errors
     /// [`JobError`] when the solid cannot be made.
     pub fn stl(&self) -> Result<Vec<u8>, JobError> {
-        let solid = fabricate::extrude(&self.part.region, self.job.options.thickness_mm)?;
-        Ok(export::stl(&solid, self.report.generator)?)
+        print::mesh(Format::Stl, &self.solid(&mut Vec::new())?, &self.document())
+    }
+
+    /// The part as a solid; what the user may want to know is added to `notes`.
+    fn solid(&self, notes: &mut Vec<String>) -> Result<Solid, JobError> {
+        let options = &self.job.options;
+        let chord_mm = self.job.tolerances.chord_mm();
+        options.print.solid(&self.part.region, options.thickness_mm, chord_mm, notes)
+    }
+
+    /// What files say of the solid.
+    fn document(&self) -> MeshDocument {
+        let options = &self.job.options;
+        let seed = match options.choice {
+            Choice::Drawn { seed, .. } => Some(seed),
+            _ => options.seed,
+        };
+        options.print.document(&options.exemplar, seed, self.counts)
     }
 
     /// What was found in the drawing, which is kept for [`Band::deliver`].
@@ -392,8 +474,10 @@ impl Band {
         let scale = |narrowest: Option<Narrowest>, wanted: f64, option: &str| {
             let factor = narrowest.map(|n| wanted / n.width_mm).filter(|f| f.is_finite() && *f < 100.0);
             let width = factor.map(|f| format!("--width {:.0}mm or more", (self.report.width_mm * f).ceil()));
+            // A tile cannot be mended, and what was mended has been.
+            let mend = if self.job.options.enforce { "" } else { "--enforce would mend it, or " };
             format!(
-                "; {} would do, or a smaller {option}",
+                "; {mend}{} would do, or a smaller {option}",
                 width.unwrap_or_else(|| "a larger --width".to_owned())
             )
         };

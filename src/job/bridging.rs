@@ -1,6 +1,7 @@
 //! Bridges in a job: what they could do where there is no plan, and what to tell of those that were laid.
 
 use glam::DVec2;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::plan::PlanError;
@@ -11,7 +12,7 @@ use crate::solver::Refusal;
 use crate::topology::{Goal, Topology, Wanted};
 
 /// The bridges of a part. Lengths are millimetres.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct BridgesReport {
     /// Components and holes without bridges.
     pub without: Counts,

@@ -5,10 +5,15 @@ use std::path::{Path, PathBuf};
 use super::band::Band;
 use super::choice::Choice;
 use super::error::JobError;
+use super::laser::LaserOptions;
+use super::making;
 use super::output::{Output, Target};
+use super::picture::PictureOptions;
 use super::plan::DEFAULT_MEMORY_LIMIT;
+use super::print::PrintOptions;
 use super::stage::Stage;
 use crate::domain::CurveSpec;
+use crate::fabricate::Material;
 use crate::fit::StitchMethod;
 use crate::pieces::CostWeights;
 use crate::planar::Tolerances;
@@ -42,12 +47,17 @@ pub struct BandBuilder {
     pub(super) beta: f64,
     pub(super) weights: CostWeights,
     pub(super) thickness_mm: f64,
+    pub(super) print: PrintOptions,
+    pub(super) picture: PictureOptions,
     pub(super) round_mm: Option<f64>,
     pub(super) stitch: StitchMethod,
     pub(super) bridge_mm: Option<f64>,
     pub(super) choice: Choice,
     pub(super) counted: bool,
     pub(super) memory_limit: usize,
+    pub(super) laser: LaserOptions,
+    pub(super) enforce: bool,
+    pub(super) material: Option<Material>,
     chord_mm: f64,
     min_feature_mm: f64,
     min_gap_mm: f64,
@@ -71,12 +81,17 @@ impl BandBuilder {
             beta: 0.0,
             weights: CostWeights::default(),
             thickness_mm: DEFAULT_THICKNESS_MM,
+            print: PrintOptions::default(),
+            picture: PictureOptions::default(),
             round_mm: None,
             stitch: StitchMethod::default(),
             bridge_mm: None,
             choice: Choice::default(),
             counted: false,
             memory_limit: DEFAULT_MEMORY_LIMIT,
+            laser: LaserOptions::default(),
+            enforce: false,
+            material: None,
             chord_mm: Tolerances::DEFAULT_CHORD_MM,
             min_feature_mm: 0.0,
             min_gap_mm: 0.0,
@@ -156,6 +171,18 @@ impl BandBuilder {
         self
     }
 
+    /// How the solid is made, beyond its thickness.
+    pub fn print(mut self, print: PrintOptions) -> Self {
+        self.print = print;
+        self
+    }
+
+    /// What pictures show, and how large they are.
+    pub fn picture(mut self, picture: PictureOptions) -> Self {
+        self.picture = picture;
+        self
+    }
+
     /// The narrowest ink that the machine makes; 0 is not checked.
     pub fn min_feature_mm(mut self, min_feature_mm: f64) -> Self {
         self.min_feature_mm = min_feature_mm;
@@ -177,6 +204,19 @@ impl BandBuilder {
     /// The radius to which corners of the curve are rounded; without one, a corner is an error.
     pub fn round_mm(mut self, radius_mm: f64) -> Self {
         self.round_mm = Some(radius_mm);
+        self
+    }
+
+    /// Whether ink that is too thin is thickened to the minimum feature, and gaps that are too narrow are widened to the
+    /// minimum gap, before the part is checked.
+    pub fn enforce(mut self, enforce: bool) -> Self {
+        self.enforce = enforce;
+        self
+    }
+
+    /// The material, for the mass in the report.
+    pub fn material(mut self, material: Material) -> Self {
+        self.material = Some(material);
         self
     }
 
@@ -205,6 +245,12 @@ impl BandBuilder {
         self
     }
 
+    /// What files of cut lines are to be like.
+    pub fn laser(mut self, laser: LaserOptions) -> Self {
+        self.laser = laser;
+        self
+    }
+
     /// The width of bridges: where the ornament cannot give the components or holes that are asked for, or only at a
     /// higher cost than with bridges, struts of this width join components and slits of this width open holes. A
     /// bridge costs as much as half a jump. Without a width there are none, and what cannot be had is refused.
@@ -227,6 +273,7 @@ impl BandBuilder {
             in_range("--bridge", width, 0.01, 100.0)?;
         }
         in_range("--thickness", self.thickness_mm, 0.001, 10_000.0)?;
+        self.print.profile(self.thickness_mm)?;
         if !(0.0..=1e6).contains(&self.beta) {
             return Err(out_of_range("--variety", self.beta, "it must be from 0 to 1000000"));
         }
@@ -244,6 +291,9 @@ impl BandBuilder {
                     .to_owned(),
                 wanted: "ask for --holes 1 or more, or leave one of the two out".to_owned(),
             });
+        }
+        if self.enforce && tolerances.min_feature_mm() == 0.0 && tolerances.min_gap_mm() == 0.0 {
+            return Err(making::no_width());
         }
         let variety = (self.beta > 0.0).then(|| Variety::new(self.beta));
         let memory_limit = self.memory_limit;
@@ -273,12 +323,15 @@ pub struct BandJob {
 }
 
 impl BandJob {
-    /// Refuses outputs that would overwrite each other or an input, or that cannot be files. Writing does so
+    /// Refuses outputs that would overwrite each other or an input, that cannot be files, or that contradict the
+    /// options for cut lines. Writing does so
     /// too; a job takes a while, though, and this can be known before it.
     ///
     /// # Errors
     /// As [`Output::check`].
     pub fn check_outputs(&self, outputs: &[Output], report_file: Option<&Target>) -> Result<(), JobError> {
+        self.options.laser.check(outputs)?;
+        self.options.picture.check(outputs)?;
         let curve = match &self.options.along {
             CurveSpec::Path { file, .. } => Some(file.as_path()),
             CurveSpec::Line { .. } | CurveSpec::Circle { .. } => None,

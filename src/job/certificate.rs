@@ -11,6 +11,7 @@
 //! does not tell whether the descriptors are those of the exemplar's geometry. What the files hold is counted on them.
 
 use rustc_hash::FxHashMap;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
@@ -24,7 +25,7 @@ use crate::topology::{Descriptor, Goal, Shape, Topology, Wanted};
 const VERSION: u32 = 1;
 
 /// What proves the counts of a band. Whole numbers and text only, so that it reads back as it was written.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Certificate {
     /// The version of this structure.
     pub version: u32,
@@ -57,7 +58,7 @@ pub struct Certificate {
 }
 
 /// What makes the pieces again. Numbers that are not whole are text, as their shortest decimal form.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Source {
     /// SHA-256 of the exemplar's file, in hexadecimal.
     pub sha256: String,
@@ -72,7 +73,7 @@ pub struct Source {
 }
 
 /// Counts that were asked for: from the first to the second; null when free.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct WantedCounts {
     /// Components.
     pub components: Option<[u32; 2]>,
@@ -83,7 +84,7 @@ pub struct WantedCounts {
 }
 
 /// The descriptor of a piece (Zhou 2014 §3.4).
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct PieceDescriptor {
     /// Its number.
     pub piece: usize,
@@ -98,7 +99,7 @@ pub struct PieceDescriptor {
 }
 
 /// How the open portals of a run are connected.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Connections {
     /// On its left end, as in [`PieceDescriptor`].
     pub left: Vec<u16>,
@@ -107,7 +108,7 @@ pub struct Connections {
 }
 
 /// The run after each piece, as columns of the same length.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Steps {
     /// How it is connected: which of [`Certificate::states`].
     pub state: Vec<usize>,
@@ -118,7 +119,7 @@ pub struct Steps {
 }
 
 /// What gluing the ends of a ring makes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Closing {
     /// Portals that are glued.
     pub portals: usize,
@@ -131,7 +132,7 @@ pub struct Closing {
 }
 
 /// A bridge and what it changes.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct BridgeStep {
     /// `strut` for ink that was added, `slit` for ink that was taken away.
     pub kind: &'static str,
@@ -144,7 +145,7 @@ pub struct BridgeStep {
 }
 
 /// The counts in the end.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct ResultCounts {
     /// Components.
     pub components: u32,
@@ -157,11 +158,11 @@ pub struct ResultCounts {
 }
 
 /// A file that was written.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct FileDigest {
     /// The name as it was given.
     pub file: String,
-    /// `svg`, `stl` or `png`.
+    /// `svg`, `stl`, `3mf`, `obj` or `png`.
     pub format: &'static str,
     /// SHA-256 of its bytes, in hexadecimal.
     pub sha256: String,

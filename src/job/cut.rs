@@ -7,7 +7,7 @@ use super::error::JobError;
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
 use crate::fit::Sides;
 use crate::pieces::{Catalogue, CostWeights};
-use crate::planar::Region;
+use crate::planar::{Region, Tolerances};
 use crate::reeb::{ReebGraph, Slicing, SlicingRule};
 
 /// The part of the chord error that is for flattening the exemplar.
@@ -92,7 +92,12 @@ pub(super) fn slice_region(job: &BandJob, exemplar: Exemplar, region: &Region) -
         SlicingChoice::Uniform(lines) => SlicingRule::Uniform { lines },
     };
     let reeb = ReebGraph::new(region);
-    let slicing = Slicing::keeping(region, &reeb, rule, &job.options.kept, &job.tolerances)?;
+    // What will be thickened may be cut where it is thin.
+    let tolerances = match job.options.enforce {
+        true => &Tolerances::new(job.tolerances.chord_mm(), 0.0, 0.0)?,
+        false => &job.tolerances,
+    };
+    let slicing = Slicing::keeping(region, &reeb, rule, &job.options.kept, tolerances)?;
     let (weights, mirror) = (job.options.weights, job.options.mirror);
     let catalogue = catalogue(region, &slicing, &weights, mirror);
     let (region, height_mm) = (region.clone(), high.y - low.y);

@@ -8,7 +8,7 @@ use thiserror::Error;
 use crate::domain::DomainError;
 use crate::exemplar::ExemplarError;
 use crate::export::ExportError;
-use crate::fabricate::{BridgeError, FabricateError};
+use crate::fabricate::{BridgeError, EnforceError, FabricateError, KerfError, SheetError};
 use crate::fit::FitError;
 use crate::pieces::CostWeightsError;
 use crate::planar::TolerancesError;
@@ -72,6 +72,17 @@ pub enum JobError {
     /// Bridges cannot be laid.
     #[error("--bridge: {0}. Nothing was written")]
     Bridge(#[from] BridgeError),
+    /// The kerf takes more than there is.
+    #[error("--kerf: {0}. Nothing was written")]
+    Kerf(#[from] KerfError),
+    /// The part does not go on the plate.
+    #[error("--sheet: {0}. Nothing was written")]
+    Sheet(#[from] SheetError),
+    /// Minimum feature and gap cannot be enforced.
+    #[error(
+        "--enforce: {0}; a larger --width would do, or a smaller --min-feature or --min-gap. Nothing was written"
+    )]
+    Enforce(#[from] EnforceError),
     /// The solid cannot be made.
     #[error(transparent)]
     Fabricate(#[from] FabricateError),
@@ -130,12 +141,23 @@ impl JobError {
             | Self::Tolerances(_)
             | Self::Weights(_)
             | Self::Option { .. }
+            | Self::Sheet(_)
+            | Self::Kerf(KerfError::Range { .. })
             | Self::Export(_) => 2,
             Self::Slicing(SlicingError::TooThin { .. }) => 3,
             Self::Slicing(_) => 2,
             Self::Bridge(BridgeError::Width { .. }) => 2,
-            Self::Refused(_) | Self::SearchTooLarge { .. } | Self::Bridge(_) => 3,
-            Self::Fabricate(FabricateError::Thickness { .. }) => 2,
+            Self::Refused(_) | Self::SearchTooLarge { .. } | Self::Bridge(_) | Self::Kerf(_) => 3,
+            Self::Enforce(EnforceError::Width { .. }) => 2,
+            Self::Enforce(_) => 3,
+            Self::Fabricate(
+                FabricateError::Thickness { .. }
+                | FabricateError::Chamfer { .. }
+                | FabricateError::Taper { .. }
+                | FabricateError::TooManyTriangles { .. }
+                | FabricateError::Bed { .. },
+            ) => 2,
+            Self::Fabricate(FabricateError::Inset { .. }) => 3,
             Self::Outline { .. }
             | Self::Tiling(_)
             | Self::Fabricate(_)

@@ -3,25 +3,30 @@
 use std::path::Path;
 
 use glam::DVec2;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::bridging::{self, BridgesReport};
 use super::error::JobError;
+use super::laser::{Cutting, LaserOptions, LaserReport};
+use super::making::{self, CostReport, EnforcedReport};
 use super::output::{Format, Output, Pending, Target, persist};
+use super::picture::{PictureOptions, Pictured};
+use super::print::{self, PrintOptions, check_mesh};
 use super::report::{InputReport, StageTime};
 use super::stage::{Clock, Stage};
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
 use crate::export::{self, SvgOptions};
-use crate::fabricate::{self, Bridge, Counts};
+use crate::fabricate::{Bridge, Counts, Material};
 use crate::planar::{GridPoint, Region, Tolerances};
 use crate::topology::{Goal, Wanted};
-use crate::verify::{self, Expected, Mismatch, StlReport, SvgReport};
+use crate::verify::{self, Expected, MeshReport, Mismatch, NarrowPlaces, SvgReport};
 
 /// The part of the chord error that is for flattening the drawing; the rest is for fitting curves to it again.
 const READ_SHARE: f64 = 0.5;
 
 /// What was extruded, and what was found in the files.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ExtrudeReport {
     /// The version of this structure.
     pub schema_version: u32,
@@ -35,10 +40,20 @@ pub struct ExtrudeReport {
     pub thickness_mm: f64,
     /// The bridges, when some were asked for; the counts are with them.
     pub bridges: Option<BridgesReport>,
+    /// What was thickened and widened; null when it was not asked for, or nothing was lacking.
+    pub enforced: Option<EnforcedReport>,
+    /// The ten narrowest places of ink and of gaps.
+    pub narrow_places: NarrowPlaces,
+    /// What costs money.
+    pub cost: CostReport,
+    /// Bytes of the files, in their order.
+    pub bytes: Vec<usize>,
     /// What was found in the solid, if one was written.
-    pub solid: Option<StlReport>,
+    pub solid: Option<MeshReport>,
     /// What was found in the SVG, if one was written.
     pub drawing: Option<SvgReport>,
+    /// The files of cut lines, if some were written.
+    pub laser: Option<LaserReport>,
     /// The files that were written.
     pub files: Vec<String>,
     /// What the user may want to know.
@@ -58,22 +73,55 @@ pub struct ExtrudeBridges {
     pub holes: Option<Wanted>,
 }
 
-/// Extrudes the drawing in `file` to a solid `thickness_mm` high, with `bridges` laid before, and writes each output,
-/// verified: the solid as STL, the outline that it has as SVG on the drawing's own page, and a picture of it with its
-/// bridges.
+/// How a drawing that is extruded is to be made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExtrudeMaking {
+    /// The height of the solid in millimetres.
+    pub thickness_mm: f64,
+    /// The tolerances; the counts of the outline must survive its widths.
+    pub tolerances: Tolerances,
+    /// Whether what is too thin is thickened and what is too narrow widened before.
+    pub enforce: bool,
+    /// The material, for the mass in the report.
+    pub material: Option<Material>,
+    /// The walls of the solid, and the printer.
+    pub print: PrintOptions,
+    /// The files of cut lines.
+    pub laser: LaserOptions,
+    /// The pictures.
+    pub picture: PictureOptions,
+}
+
+impl ExtrudeMaking {
+    fn check(&self, outputs: &[Output]) -> Result<(), JobError> {
+        if self.enforce && self.tolerances.min_feature_mm() == 0.0 && self.tolerances.min_gap_mm() == 0.0 {
+            return Err(making::no_width());
+        }
+        self.laser.check(outputs)?;
+        self.picture.check(outputs)?;
+        self.print.profile(self.thickness_mm)?;
+        Ok(())
+    }
+}
+
+/// Extrudes the drawing in `file` to a solid as `making` says, with `bridges` laid before, and writes each output,
+/// verified: the solid as STL, 3MF or OBJ, the outline that it has as SVG on the drawing's own page, cut lines as DXF or SVG,
+/// and a picture.
 ///
 /// # Errors
 /// [`JobError`] for a drawing that cannot be represented, a thickness out of range, and a file that cannot be
 /// written or does not pass; then none of them exists under its name.
 pub fn extrude(
     file: &Path,
-    thickness_mm: f64,
-    tolerances: &Tolerances,
+    making: &ExtrudeMaking,
     bridges: Option<ExtrudeBridges>,
     outputs: &[Output],
     progress: &mut dyn FnMut(Stage),
 ) -> Result<ExtrudeReport, JobError> {
     Output::check(outputs.iter().map(Output::target), &[file])?;
+    making.check(outputs)?;
+    let ExtrudeMaking { tolerances, material, print, laser, picture, .. } = making;
+    let (thickness_mm, enforce) = (making.thickness_mm, making.enforce);
     let mut clock = Clock::new(progress);
     let options = ReadOptions {
         chord_mm: tolerances.chord_mm() * READ_SHARE,
@@ -88,33 +136,72 @@ pub fn extrude(
         None => None,
     };
     notes.extend(bridges.as_ref().map(|report| report.note(Counts::of(&region))));
+    let mut enforced = None;
+    if enforce
+        && let Some((mended, report)) =
+            clock.time(Stage::Enforce, || making::enforced(&region, tolerances))?
+    {
+        notes.push(report.note());
+        (region, enforced) = (mended, Some(report));
+    }
+    let narrow_places = clock.time(Stage::Verify, || making::worst_places(&region, tolerances));
+    check_widths(&region, tolerances, file, enforce)?;
     let expected = Expected {
         components: Some(region.components().into()),
         holes: Some(region.holes().into()),
         ..Expected::default()
     };
-    let (mut solid, mut drawn) = (None, None);
+    let mut cutting = match laser.is_needed(outputs) {
+        true => {
+            let page_mm = DVec2::from(drawing.page_mm());
+            let chord_mm = tolerances.chord_mm();
+            let chords_mm = [chord_mm, chord_mm * (1.0 - READ_SHARE)];
+            let of = format!("{} of {}", generator(), file_name(file));
+            Some(clock.time(Stage::CutLines, || Cutting::new(laser, &region, page_mm, chords_mm, of))?)
+        }
+        false => None,
+    };
+    let (mut raised, mut solid, mut drawn) = (None, None, None);
     let mut pending = Vec::with_capacity(outputs.len());
+    let mut sizes = Vec::with_capacity(outputs.len());
     for output in outputs {
         let target = output.target();
+        if let Some(cutting) = cutting.as_mut().filter(|_| laser.makes(output.format())) {
+            let (item, bytes) = cutting.write(output, &mut clock)?;
+            sizes.push(bytes.len());
+            pending.push(item);
+            continue;
+        }
         let item = match output.format() {
-            Format::Stl => {
-                let bytes = clock.time(Stage::Stl, || stl(&region, thickness_mm))?;
+            Format::Dxf => unreachable!("a DXF has cut lines"),
+            format @ (Format::Stl | Format::Threemf | Format::Obj) => {
+                let bytes = clock.time(Stage::Stl, || {
+                    let make = || print.solid(&region, thickness_mm, tolerances.chord_mm(), &mut notes);
+                    let solid = print::raised(&mut raised, make)?;
+                    print::mesh(format, solid, &print.document(file, None, Counts::of(&region)))
+                })?;
+                sizes.push(bytes.len());
                 let item = Pending::new(target, bytes)?;
-                solid = Some(clock.time(Stage::Verify, || check_stl(target, &item, &expected))?);
+                solid = Some(clock.time(Stage::Verify, || check_mesh(output, &item, &expected))?);
                 item
             }
             Format::Svg => {
                 let chord_mm = tolerances.chord_mm();
                 let bytes = clock.time(Stage::Svg, || svg(&region, &drawing, file, chord_mm))?;
+                sizes.push(bytes.len());
                 let item = Pending::new(target, bytes)?;
                 drawn = Some(clock.time(Stage::Verify, || check_svg(target, &item, &expected, chord_mm))?);
                 item
             }
             Format::Png => {
                 let laid: &[Bridge] = bridges.as_ref().map_or(&[], |report| &report.bridges);
-                let picture = clock
-                    .time(Stage::Png, || export::png_with_bridges(&region, laid, export::DEFAULT_PIXELS))?;
+                let narrow_mm = narrow_places.places_mm();
+                let part = Pictured { region: &region, bridges: laid, seams_mm: &[], narrow_mm: &narrow_mm };
+                let picture = clock.time(Stage::Png, || {
+                    let make = || print.solid(&region, thickness_mm, tolerances.chord_mm(), &mut notes);
+                    picture.png(&part, || print::raised(&mut raised, make))
+                })?;
+                sizes.push(picture.len());
                 Pending::new(target, picture)?
             }
         };
@@ -128,21 +215,43 @@ pub fn extrude(
         holes: region.holes(),
         thickness_mm,
         bridges,
+        enforced,
+        narrow_places,
+        cost: CostReport::new(&region, thickness_mm, material.as_ref()),
+        bytes: sizes,
         solid,
         drawing: drawn,
+        laser: cutting.map(|cutting| cutting.report),
         files: outputs.iter().map(|output| output.target().to_string()).collect(),
         notes,
         times: clock.times,
     })
 }
 
-fn generator() -> String {
-    format!("Openwork {}", env!("CARGO_PKG_VERSION"))
+/// The widths that were asked for are those of the outline, whatever files are made of it.
+fn check_widths(
+    region: &Region,
+    tolerances: &Tolerances,
+    file: &Path,
+    is_enforced: bool,
+) -> Result<(), JobError> {
+    let (feature_mm, gap_mm) = (tolerances.min_feature_mm(), tolerances.min_gap_mm());
+    // As finely as a written file is judged.
+    let chord_mm = 0.25 * tolerances.chord_mm();
+    let mismatch = if feature_mm > 0.0 && !verify::endures_erosion(region, 0.5 * feature_mm, chord_mm) {
+        let narrowest = verify::min_feature(region, feature_mm, chord_mm);
+        Mismatch::Feature { wanted_mm: feature_mm, narrowest }
+    } else if gap_mm > 0.0 && !verify::endures_dilation(region, 0.5 * gap_mm, chord_mm) {
+        Mismatch::Gap { wanted_mm: gap_mm, narrowest: verify::min_gap(region, gap_mm, chord_mm) }
+    } else {
+        return Ok(());
+    };
+    let remedy = if is_enforced { "" } else { "; --enforce would mend it" }.to_owned();
+    Err(JobError::Mismatch { file: file.to_owned(), mismatch, remedy })
 }
 
-fn stl(region: &Region, thickness_mm: f64) -> Result<Vec<u8>, JobError> {
-    let solid = fabricate::extrude(region, thickness_mm)?;
-    Ok(export::stl(&solid, &generator())?)
+fn generator() -> String {
+    format!("Openwork {}", env!("CARGO_PKG_VERSION"))
 }
 
 /// The outline on the page of `drawing`, which grows where ink lies outside of it.
@@ -186,19 +295,6 @@ fn check_svg(
     let bytes = pending.read_again()?;
     let report = verify::read_svg(&bytes, chord_mm / 4.0)
         .map_err(|error| JobError::Unjudged { file: name(target), error })?;
-    report.check(expected).map_err(|mismatch| mismatched(target, mismatch))?;
-    Ok(report)
-}
-
-/// Reads a written STL again and holds it against the plan.
-pub(super) fn check_stl(
-    target: &Target,
-    pending: &Pending,
-    expected: &Expected,
-) -> Result<StlReport, JobError> {
-    let bytes = pending.read_again()?;
-    let report =
-        verify::read_stl(&bytes).map_err(|error| JobError::Unjudged { file: name(target), error })?;
     report.check(expected).map_err(|mismatch| mismatched(target, mismatch))?;
     Ok(report)
 }

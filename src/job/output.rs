@@ -11,8 +11,14 @@ use crate::export::{self, ExportError};
 pub enum Format {
     /// An SVG drawing in millimetres.
     Svg,
+    /// A DXF of cut lines in millimetres.
+    Dxf,
     /// A binary STL solid in millimetres.
     Stl,
+    /// A 3MF package of the solid, with names, colours and notes.
+    Threemf,
+    /// An OBJ of the solid in millimetres.
+    Obj,
     /// A picture to look at.
     Png,
 }
@@ -22,9 +28,17 @@ impl Format {
     pub fn name(self) -> &'static str {
         match self {
             Self::Svg => "svg",
+            Self::Dxf => "dxf",
             Self::Stl => "stl",
+            Self::Threemf => "3mf",
+            Self::Obj => "obj",
             Self::Png => "png",
         }
+    }
+
+    /// Whether such files hold a solid.
+    pub fn is_solid(self) -> bool {
+        matches!(self, Self::Stl | Self::Threemf | Self::Obj)
     }
 }
 
@@ -73,7 +87,7 @@ pub struct Output {
 }
 
 impl Output {
-    /// A file whose extension says the format: `.svg`, `.stl` or `.png`.
+    /// A file whose extension says the format: `.svg`, `.dxf`, `.stl`, `.3mf`, `.obj` or `.png`.
     ///
     /// # Errors
     /// [`JobError::Option`] for another extension.
@@ -82,14 +96,18 @@ impl Output {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
         let format = match extension.as_str() {
             "svg" => Format::Svg,
+            "dxf" => Format::Dxf,
             "stl" => Format::Stl,
+            "3mf" => Format::Threemf,
+            "obj" => Format::Obj,
             "png" => Format::Png,
             _ => {
                 return Err(JobError::Option {
                     option: "--output",
                     found: format!("{} does not say a format", path.display()),
-                    wanted: "end the name in .svg, .stl or .png (or use - for an SVG on standard output)"
-                        .to_owned(),
+                    wanted:
+                        "end the name in .svg, .dxf, .stl, .3mf, .obj or .png (or use - for an SVG on standard output)"
+                            .to_owned(),
                 });
             }
         };

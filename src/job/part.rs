@@ -12,6 +12,9 @@ use crate::topology::Topology;
 /// Blank page around the part, in millimetres.
 pub(super) const MARGIN_MM: f64 = 1.0;
 
+/// Chords of a line across the band in pictures: where the band is squeezed it is not straight.
+const SEAM_CHORDS: u32 = 16;
+
 /// A part on its page.
 #[derive(Debug, Clone)]
 pub(super) struct Part {
@@ -21,6 +24,8 @@ pub(super) struct Part {
     pub(super) page_mm: DVec2,
     /// What was added to positions of the curve to lay the part on its page.
     pub(super) shift_mm: DVec2,
+    /// Lines across the band where two pieces meet.
+    pub(super) seams_mm: Vec<Vec<DVec2>>,
 }
 
 /// Why an outline is no part.
@@ -65,7 +70,11 @@ impl Part {
         if (components, holes) != (planned.components as usize, planned.holes as usize) {
             return Err(PartError::Untrue(OutlineFault::Counts { components, holes }));
         }
-        Ok(Self { region, page_mm, shift_mm: shift })
+        let [low, high] = map.v_range_mm();
+        let across = (0..=SEAM_CHORDS).map(|i| low + (high - low) * f64::from(i) / f64::from(SEAM_CHORDS));
+        let seam = |u: f64| across.clone().map(|v| map.map(u, v) + shift).collect();
+        let seams_mm = outline.seams.iter().map(|s| seam(s.u_mm)).collect();
+        Ok(Self { region, page_mm, shift_mm: shift, seams_mm })
     }
 
     /// The part on a page of `page_mm` that begins where the part does.
@@ -74,6 +83,7 @@ impl Part {
         let grid = self.region.grid();
         let corner = GridPoint::new(-grid.steps(low.x), -grid.steps(low.y));
         let region = snapped_to_f32(&self.region.shifted(corner)).map_err(JobError::Fabricate)?;
-        Ok(Self { region, page_mm, shift_mm: self.shift_mm - low })
+        let seams_mm = self.seams_mm.iter().map(|seam| seam.iter().map(|&p| p - low).collect()).collect();
+        Ok(Self { region, page_mm, shift_mm: self.shift_mm - low, seams_mm })
     }
 }

@@ -1,5 +1,6 @@
 //! The report of a rectangle, as JSON.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::bridging::BridgesReport;
@@ -14,7 +15,7 @@ use crate::topology::Wanted;
 use crate::verify::Tiling;
 
 /// One of the two passes of a rectangle. Lengths are millimetres.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct DirectionReport {
     /// How long the run is: the rectangle's width in the first pass, its height in the second.
     pub length_mm: f64,
@@ -90,7 +91,7 @@ impl DirectionReport {
 }
 
 /// A way of making a rectangle that was tried.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Attempt {
     /// The height of the strip in millimetres.
     pub row_mm: f64,
@@ -143,7 +144,7 @@ impl Attempt {
 }
 
 /// What was asked for, what was made, and what was found in the files. Lengths are millimetres.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct RectReport {
     /// The version of this structure; it changes when a field changes its meaning or goes.
     pub schema_version: u32,

@@ -171,6 +171,7 @@ impl Way {
         if let Some((width_mm, _)) = bridges {
             clock.time(Stage::Bridge, || band.lay_bridges(width_mm, None))?;
         }
+        band.enforce(clock)?;
         // What messages call the width of a band is the height of a row here.
         band.report.width_mm = strip.band.report.width_mm;
         // Ink that the machine cannot make may be thicker another way.
@@ -194,5 +195,7 @@ fn turned_back(part: &Part) -> Part {
     // The turn takes x to −y; the margin below is that which was on the right.
     let up = grid.steps(low.x) + grid.steps(high.x);
     let region = part.region.turned_right().shifted(GridPoint::new(0, up));
-    Part { region, page_mm: DVec2::new(part.page_mm.y, part.page_mm.x), ..part.clone() }
+    let turned = |p: &DVec2| DVec2::new(p.y, grid.mm(up) - p.x);
+    let seams_mm = part.seams_mm.iter().map(|seam| seam.iter().map(turned).collect()).collect();
+    Part { region, page_mm: DVec2::new(part.page_mm.y, part.page_mm.x), seams_mm, ..part.clone() }
 }

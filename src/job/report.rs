@@ -1,17 +1,20 @@
 //! The report of a band, as JSON.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::bridging::BridgesReport;
 use super::certificate::Certificate;
 use super::json;
+use super::laser::LaserReport;
+use super::making::{CostReport, EnforcedReport};
 use super::ways::WayReport;
 use crate::domain::Squeeze;
 use crate::solver::Tally;
-use crate::verify::Narrowest;
+use crate::verify::{NarrowPlaces, Narrowest};
 
 /// An input file.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct InputReport {
     /// The name as it was given.
     pub file: String,
@@ -20,7 +23,7 @@ pub struct InputReport {
 }
 
 /// The seams of a band.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct SeamReport {
     /// The number of seams.
     pub count: usize,
@@ -33,7 +36,7 @@ pub struct SeamReport {
 }
 
 /// A cut that was left out, as its narrowest portal is under the minimum feature (Zhou 2014 §5.2.1).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct DroppedCutReport {
     /// Where it would have been, from the left edge of the exemplar at the size that it has in the band.
     pub x_mm: f64,
@@ -42,7 +45,7 @@ pub struct DroppedCutReport {
 }
 
 /// How pieces were bent to meet.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct StitchReport {
     /// `warp` or `lri`: what the band was made with.
     pub method: String,
@@ -53,7 +56,7 @@ pub struct StitchReport {
 }
 
 /// A piece that was warped instead.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct FallbackReport {
     /// Its place in the sequence, from 0.
     pub place: usize,
@@ -64,7 +67,7 @@ pub struct FallbackReport {
 }
 
 /// How long a stage took.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct StageTime {
     /// The stage.
     pub stage: &'static str,
@@ -77,7 +80,7 @@ pub(super) const NOT_COUNTED: &str =
     "not counted: bands are counted whose sequences meet what was asked for without bridges";
 
 /// What was asked for, what was made, and what was found in the files. Lengths are millimetres.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct BandReport {
     /// The version of this structure; it changes when a field changes its meaning or goes.
     pub schema_version: u32,
@@ -182,12 +185,20 @@ pub struct BandReport {
 }
 
 /// The part and its files, in a report. Lengths are millimetres.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct MadeReport {
     /// The narrowest ink, measured on the result.
     pub min_feature: Option<Narrowest>,
     /// The narrowest gap, measured on the result.
     pub min_gap: Option<Narrowest>,
+    /// The ten narrowest places of ink and of gaps, measured on the result.
+    pub narrow_places: NarrowPlaces,
+    /// What was thickened and widened; null when it was not asked for, or nothing was lacking.
+    pub enforced: Option<EnforcedReport>,
+    /// What costs money.
+    pub cost: Option<CostReport>,
+    /// Bytes of the files, in their order.
+    pub bytes: Vec<usize>,
     /// Ink of the part in square millimetres.
     pub area_mm2: f64,
     /// Width and height of the page.
@@ -196,6 +207,8 @@ pub struct MadeReport {
     pub vertices: usize,
     /// Straight segments and cubics in the SVG, if one was written.
     pub svg_segments: Option<[usize; 2]>,
+    /// The files of cut lines, if some were written.
+    pub laser: Option<LaserReport>,
     /// Facets of the STL, if one was written.
     pub triangles: Option<usize>,
     /// Shells of the STL.

@@ -19,9 +19,13 @@ pub enum Stage {
     Map,
     /// Struts and slits, when they are needed.
     Bridge,
+    /// Thickening and widening, when they are asked for.
+    Enforce,
     /// The SVG file.
     Svg,
-    /// The solid and the STL file.
+    /// Kerf, plate and the files of cut lines.
+    CutLines,
+    /// The solid and its STL, 3MF and OBJ files.
     Stl,
     /// The picture.
     Png,
@@ -31,14 +35,16 @@ pub enum Stage {
 
 impl Stage {
     /// All stages.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::Read,
         Self::Slice,
         Self::Solve,
         Self::Fit,
         Self::Map,
         Self::Bridge,
+        Self::Enforce,
         Self::Svg,
+        Self::CutLines,
         Self::Stl,
         Self::Png,
         Self::Verify,
@@ -53,7 +59,9 @@ impl Stage {
             Self::Fit => "fit",
             Self::Map => "map",
             Self::Bridge => "bridge",
+            Self::Enforce => "enforce",
             Self::Svg => "svg",
+            Self::CutLines => "cut_lines",
             Self::Stl => "stl",
             Self::Png => "png",
             Self::Verify => "verify",

@@ -5,6 +5,7 @@
 //! planned and their costs compared, with a price on each bridge. The dearer ones are kept for when the cheaper one
 //! turns out to have no place for its bridges. Excluded: laying them ([`crate::fabricate::bridge`]).
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::bridging;
@@ -31,7 +32,7 @@ const RELAXED_PART: usize = 8;
 const BRIDGE_JUMPS: f64 = 0.5;
 
 /// What was weighed when bridges were allowed: a sequence, and the bridges that it needs.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct WayReport {
     /// The components that the sequence was held to, without bridges; null when bridges were to see to them.
     pub components: Option<[u32; 2]>,

@@ -4,10 +4,12 @@ use std::fmt;
 
 use thiserror::Error;
 
+use super::cutlines::{CutFault, CutReport};
 use super::endure::{endures_dilation, endures_erosion};
 use super::narrowest::Narrowest;
-use super::shells::{StlFault, StlReport};
+use super::shells::{MeshFault, MeshReport};
 use super::svg::SvgReport;
+use crate::planar::Region;
 
 /// The numbers that are as expected: all from the least to the most, both included.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,6 +83,14 @@ pub enum Mismatch {
         /// The narrowest place.
         narrowest: Option<Narrowest>,
     },
+    /// Cut lines that are not sound, so that the part would be spoilt.
+    #[error("the cut lines have {count} fault(s), first: {first}")]
+    Cuts {
+        /// How many.
+        count: usize,
+        /// The first.
+        first: CutFault,
+    },
     /// Another number of shells.
     #[error("the solid has {found} shell(s); {wanted} were asked for")]
     Shells {
@@ -103,7 +113,7 @@ pub enum Mismatch {
         /// How many.
         count: usize,
         /// The first.
-        first: StlFault,
+        first: MeshFault,
     },
 }
 
@@ -124,21 +134,47 @@ impl SvgReport {
     /// # Errors
     /// The first [`Mismatch`]; for a width, with the narrowest place of the file.
     pub fn check(&self, expected: &Expected) -> Result<(), Mismatch> {
-        within(self.components, expected.components, |found, wanted| Mismatch::Components { found, wanted })?;
-        within(self.holes, expected.holes, |found, wanted| Mismatch::Holes { found, wanted })?;
-        let wanted_mm = expected.min_feature_mm;
-        if wanted_mm > 0.0 && !endures_erosion(&self.region, 0.5 * wanted_mm, self.chord_mm) {
-            return Err(Mismatch::Feature { wanted_mm, narrowest: self.min_feature });
-        }
-        let wanted_mm = expected.min_gap_mm;
-        if wanted_mm > 0.0 && !endures_dilation(&self.region, 0.5 * wanted_mm, self.chord_mm) {
-            return Err(Mismatch::Gap { wanted_mm, narrowest: self.min_gap });
-        }
-        Ok(())
+        planar(&self.region, expected, [self.min_feature, self.min_gap], self.chord_mm)
     }
 }
 
-impl StlReport {
+impl CutReport {
+    /// Whether the cut lines are sound and the material that they leave is as `expected`. Widths are tried out by
+    /// eroding and dilating.
+    ///
+    /// # Errors
+    /// The first [`Mismatch`]; for a width, with the narrowest place of the file.
+    pub fn check(&self, expected: &Expected) -> Result<(), Mismatch> {
+        if let Some(first) = self.faults.first() {
+            return Err(Mismatch::Cuts { count: self.faults.len(), first: first.clone() });
+        }
+        planar(&self.region, expected, [self.min_feature, self.min_gap], self.chord_mm)
+    }
+}
+
+/// Whether a region is as `expected`; `narrowest` are its narrowest ink and gap.
+fn planar(
+    region: &Region,
+    expected: &Expected,
+    narrowest: [Option<Narrowest>; 2],
+    chord_mm: f64,
+) -> Result<(), Mismatch> {
+    let mismatch = |found, wanted| Mismatch::Components { found, wanted };
+    within(region.components(), expected.components, mismatch)?;
+    within(region.holes(), expected.holes, |found, wanted| Mismatch::Holes { found, wanted })?;
+    let [ink, gap] = narrowest;
+    let wanted_mm = expected.min_feature_mm;
+    if wanted_mm > 0.0 && !endures_erosion(region, 0.5 * wanted_mm, chord_mm) {
+        return Err(Mismatch::Feature { wanted_mm, narrowest: ink });
+    }
+    let wanted_mm = expected.min_gap_mm;
+    if wanted_mm > 0.0 && !endures_dilation(region, 0.5 * wanted_mm, chord_mm) {
+        return Err(Mismatch::Gap { wanted_mm, narrowest: gap });
+    }
+    Ok(())
+}
+
+impl MeshReport {
     /// Whether the solid is sound and as `expected`: as many shells as components, a total genus of as many
     /// as holes. Widths are not looked at; the SVG of the same outline tells them.
     ///

@@ -22,6 +22,8 @@ pub(super) struct Shape {
     /// Millimetres, y up.
     pub(super) path: BezPath,
     pub(super) rule: FillRule,
+    /// The id of the group that it is in, or nothing.
+    pub(super) layer: String,
     /// Whether the path is the outline of a stroke, which crosses itself as a matter of course.
     pub(super) is_stroke: bool,
 }

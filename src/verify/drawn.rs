@@ -22,19 +22,23 @@ const REFUSED: [(&str, &str, &str); 6] = [
     ("clipPath", "a clip path", "apply it to the paths"),
 ];
 
-/// The drawing, resolved.
+/// The drawing, resolved. Of cut `lines`, every visible path is one, and strokes have no width.
 ///
 /// # Errors
 /// [`VerifyError::Unsupported`], [`VerifyError::Resolve`].
-pub(super) fn read(document: &Document<'_>, chord_mm: f64) -> Result<Drawing, VerifyError> {
+pub(super) fn read(document: &Document<'_>, chord_mm: f64, lines: bool) -> Result<Drawing, VerifyError> {
     refuse(document)?;
     let tree = usvg::Tree::from_xmltree(document, &usvg::Options::default())
         .map_err(|e| VerifyError::Resolve { message: e.to_string() })?;
     let size = tree.size();
     let page_mm = glam::DVec2::new(f64::from(size.width()), f64::from(size.height())) * MM_PER_PX;
-    let mut reader =
-        Reader { to_page: upright(page_mm.y) * Affine::scale(MM_PER_PX), chord_mm, shapes: Vec::new() };
-    reader.group(tree.root())?;
+    let mut reader = Reader {
+        to_page: upright(page_mm.y) * Affine::scale(MM_PER_PX),
+        chord_mm,
+        lines,
+        shapes: Vec::new(),
+    };
+    reader.group(tree.root(), "")?;
     Ok(Drawing { page_mm, shapes: reader.shapes })
 }
 
@@ -53,11 +57,13 @@ fn refuse(document: &Document<'_>) -> Result<(), VerifyError> {
 struct Reader {
     to_page: Affine,
     chord_mm: f64,
+    lines: bool,
     shapes: Vec<Shape>,
 }
 
 impl Reader {
-    fn group(&mut self, group: &usvg::Group) -> Result<(), VerifyError> {
+    fn group(&mut self, group: &usvg::Group, around: &str) -> Result<(), VerifyError> {
+        let layer = if group.id().is_empty() { around } else { group.id() };
         let refused = |what, instead| {
             let element = element_name("g", Some(group.id()));
             Err(VerifyError::Unsupported { element, line: 0, what, instead })
@@ -73,8 +79,8 @@ impl Reader {
         }
         for node in group.children() {
             match node {
-                usvg::Node::Group(group) => self.group(group)?,
-                usvg::Node::Path(path) if path.is_visible() => self.path(path)?,
+                usvg::Node::Group(group) => self.group(group, layer)?,
+                usvg::Node::Path(path) if path.is_visible() => self.path(path, layer)?,
                 usvg::Node::Path(_) => {}
                 usvg::Node::Image(_) => return refused("an image", "trace it to paths or remove it"),
                 usvg::Node::Text(_) => return refused("text", "convert it to paths"),
@@ -83,7 +89,7 @@ impl Reader {
         Ok(())
     }
 
-    fn path(&mut self, path: &usvg::Path) -> Result<(), VerifyError> {
+    fn path(&mut self, path: &usvg::Path, layer: &str) -> Result<(), VerifyError> {
         let element = element_name("path", Some(path.id()));
         let paints = [path.fill().map(usvg::Fill::paint), path.stroke().map(usvg::Stroke::paint)];
         if paints.into_iter().flatten().any(|paint| matches!(paint, usvg::Paint::Pattern(_))) {
@@ -93,18 +99,26 @@ impl Reader {
         let t = path.abs_transform();
         let to_page = self.to_page * Affine::new([t.sx, t.ky, t.kx, t.sy, t.tx, t.ty].map(f64::from));
         let outline = bez_path(path.data());
+        let layer = layer.to_owned();
+        if self.lines {
+            let (path, rule) = (to_page * outline, FillRule::EvenOdd);
+            self.shapes.push(Shape { element, line: 0, path, rule, layer, is_stroke: false });
+            return Ok(());
+        }
         if let Some(fill) = path.fill().filter(|f| f.opacity().get() > 0.0) {
             let rule = match fill.rule() {
                 usvg::FillRule::NonZero => FillRule::NonZero,
                 usvg::FillRule::EvenOdd => FillRule::EvenOdd,
             };
             let path = to_page * outline.clone();
-            self.shapes.push(Shape { element: element.clone(), line: 0, path, rule, is_stroke: false });
+            let (element, layer) = (element.clone(), layer.clone());
+            self.shapes.push(Shape { element, line: 0, path, rule, layer, is_stroke: false });
         }
         if let Some(stroke) = path.stroke().filter(|s| s.opacity().get() > 0.0) {
             let tolerance = self.chord_mm / to_page.determinant().abs().sqrt().max(f64::MIN_POSITIVE);
             let path = to_page * kurbo::stroke(outline, &style(stroke), &StrokeOpts::default(), tolerance);
-            self.shapes.push(Shape { element, line: 0, path, rule: FillRule::NonZero, is_stroke: true });
+            let rule = FillRule::NonZero;
+            self.shapes.push(Shape { element, line: 0, path, rule, layer, is_stroke: true });
         }
         Ok(())
     }

@@ -71,6 +71,22 @@ pub enum VerifyError {
         /// What is wrong with it.
         source: GridError,
     },
+    /// A coordinate of a cut line that is out of range or not a number.
+    #[error("{element}: {source}")]
+    CutCoordinate {
+        /// The element, with its line in the file.
+        element: String,
+        /// What is wrong with it.
+        source: GridError,
+    },
+    /// A DXF that cannot be read, or has what cannot be judged.
+    #[error("line {line}: {message}")]
+    Dxf {
+        /// Where.
+        line: u32,
+        /// What is wrong, and what would work.
+        message: String,
+    },
     /// A binary STL whose length does not agree with its header.
     #[error(
         "the header promises {triangles} triangles, which are {wanted} bytes, but the file has {found}: it was cut off or is no STL"
@@ -95,6 +111,31 @@ pub enum VerifyError {
         /// What the parser says.
         message: String,
     },
+    /// Not a whole archive, as a 3MF is one.
+    #[error("not a readable 3MF package: {message}; it was cut off or is no 3MF")]
+    Archive {
+        /// What the unpacker says.
+        message: String,
+    },
+    /// A 3MF package without the part that it needs.
+    #[error("the 3MF package has no {part}, so there is nothing to count")]
+    NoModel {
+        /// What is missing.
+        part: String,
+    },
+    /// Something in the model of a 3MF or in an OBJ that cannot be read.
+    #[error("line {line} of the {kind}: {message}")]
+    Mesh {
+        /// `3MF model` or `OBJ`.
+        kind: &'static str,
+        /// The line, counted from 1.
+        line: u32,
+        /// What is wrong, and what is wanted.
+        message: String,
+    },
+    /// A mesh without triangles.
+    #[error("the file has no triangles")]
+    NoFacets,
     /// A corner that is NaN or infinite.
     #[error("facet {facet} has a corner that is not a finite number")]
     NotFinite {

@@ -3,7 +3,8 @@
 //! The promise of Openwork is about the file, not the plan. So the bytes are read again here, by code that
 //! shares nothing with the code that made them beyond [`crate::planar`], and what is found can be checked
 //! against what was asked for ([`Expected`]). [`read_svg`] fills every path under its own rule and counts on
-//! the union; [`read_stl`] welds corners by their exact bits and counts shells and genus by Euler's formula.
+//! the union; [`read_dxf`] and [`read_cut_svg`] judge lines to be cut; [`read_stl`], [`read_threemf`] and [`read_obj`] weld
+//! corners by their exact bits, count shells and genus by Euler's formula and look for facets that cross.
 //! "At the tolerance of the machine" means that the counts stay the same after eroding by half of the
 //! minimum feature and after dilating by half of the minimum gap ([`endures_erosion`],
 //! [`endures_dilation`]); where they would change first is measured by [`widths`].
@@ -17,17 +18,26 @@ mod ascent;
 mod certificate;
 mod check;
 mod clearance;
+mod crossings;
+mod cut_svg;
+mod cutlines;
 mod drawing;
 mod drawn;
+mod dxf;
 mod endure;
 mod error;
 mod json;
 mod narrowest;
+mod obj;
+mod path_data;
 mod plain;
 mod replay;
 mod shells;
+mod spline;
 mod stl;
+mod stretches;
 mod svg;
+mod threemf;
 mod tiling;
 mod walls;
 
@@ -35,10 +45,15 @@ pub use certificate::{
     CertificateError, CertificateFault, CertificatePlace, CertificateReport, Counted, replay_certificate,
 };
 pub use check::{Between, Expected, Mismatch};
+pub use cut_svg::{has_cut_lines, read_cut_svg};
+pub use cutlines::{CutFault, CutLayer, CutReport};
+pub use dxf::read_dxf;
 pub use endure::{endures_dilation, endures_erosion};
 pub use error::VerifyError;
-pub use narrowest::{Narrowest, Widths, min_feature, min_gap, widths};
-pub use shells::{Shell, StlFault, StlFaultKind, StlReport};
+pub use narrowest::{NarrowPlaces, Narrowest, Widths, min_feature, min_gap, narrow_places, widths};
+pub use obj::read_obj;
+pub use shells::{MeshFault, MeshFaultKind, MeshReport, Shell};
 pub use stl::read_stl;
 pub use svg::{SvgFault, SvgReport, read_svg};
+pub use threemf::read_threemf;
 pub use tiling::{Tiling, TilingFault, tiling};

@@ -11,7 +11,11 @@
 //! in some thousands is a few per cent off. Whether a region holds at a given width is therefore decided by
 //! [`super::endures_erosion`] and [`super::endures_dilation`], not by comparing with these.
 
+use std::iter::Peekable;
+use std::vec;
+
 use glam::DVec2;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::ascent::{Climber, Spot};
@@ -31,12 +35,13 @@ const STARTS: usize = 8;
 const ROUNDING: f64 = 1e-9;
 
 /// A narrowest place: its width, and the middle of it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Narrowest {
     /// The width in millimetres: eroding (or dilating) by half of it changes the counts.
     pub width_mm: f64,
     /// The middle of the place in millimetres, y up.
     #[serde(serialize_with = "super::json::point")]
+    #[schemars(with = "[f64; 2]")]
     pub position_mm: DVec2,
 }
 
@@ -65,16 +70,82 @@ pub fn min_gap(region: &Region, limit_mm: f64, chord_mm: f64) -> Option<Narrowes
 
 /// Both at once, for little more than the price of one. A single convex part has no gap.
 pub fn widths(region: &Region, chord_mm: f64) -> Widths {
-    let (Some(mut clearance), Some((low, high))) = (Clearance::new(region), region.bounds_mm()) else {
-        return Widths::default();
+    let first = |mut narrowing: Narrowing<'_>| narrowing.next();
+    let Some(survey) = Survey::new(region) else { return Widths::default() };
+    Widths { feature: first(survey.narrowing(true, chord_mm)), gap: first(survey.narrowing(false, chord_mm)) }
+}
+
+/// Narrow places of a region, the narrowest first.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
+pub struct NarrowPlaces {
+    /// Where erosion loses ink.
+    pub ink: Vec<Narrowest>,
+    /// Where dilation loses gaps.
+    pub gaps: Vec<Narrowest>,
+}
+
+impl NarrowPlaces {
+    /// The middle and the width of each, ink first, in millimetres.
+    pub fn places_mm(&self) -> Vec<(DVec2, f64)> {
+        self.ink.iter().chain(&self.gaps).map(|place| (place.position_mm, place.width_mm)).collect()
+    }
+}
+
+/// The narrowest places of `region`, up to `most` of ink and as many of gaps, no wider than `limit_mm`: where eroding or
+/// dilating by half of the width changes the counts. A thin neck to a blob counts, as the blob comes off; a sharp tip and
+/// the end of a notch do not, as nothing but themselves is lost. Places are distinct: their discs do not overlap, nor are
+/// they nearer to each other than a limit that is finite.
+pub fn narrow_places(region: &Region, most: usize, limit_mm: f64, chord_mm: f64) -> NarrowPlaces {
+    let Some(survey) = Survey::new(region) else { return NarrowPlaces::default() };
+    let apart_mm = if limit_mm.is_finite() { limit_mm } else { 0.0 };
+    let places = |ink: bool| {
+        let mut narrowing = survey.narrowing(ink, chord_mm);
+        let mut places: Vec<Narrowest> = Vec::new();
+        while places.len() < most
+            && let Some(found) = narrowing.next().filter(|found| found.width_mm <= limit_mm)
+        {
+            let is_apart = |place: &Narrowest| {
+                let reach = 0.5 * (place.width_mm + found.width_mm);
+                place.position_mm.distance(found.position_mm) >= reach.max(apart_mm)
+            };
+            if places.iter().all(is_apart) {
+                places.push(found);
+            }
+        }
+        places
     };
-    let height = |way: &Way| way.narrowest.radius * if way.ahead.is_some() { 1.0 } else { PLACE_SLACK };
-    clearance.ways.sort_by(|a, b| height(b).total_cmp(&height(a)).then(a.ends.cmp(&b.ends)));
-    // The way around everything runs between the ink and the frame, and is wider than any gap of the ink.
-    let outside = (high - low).length();
-    let climber = Climber::new(region);
-    let gap = first_change(&clearance, &climber, false, chord_mm).filter(|n| n.width_mm < outside);
-    Widths { feature: first_change(&clearance, &climber, true, chord_mm), gap }
+    NarrowPlaces { ink: places(true), gaps: places(false) }
+}
+
+/// The distance to the boundary of a region, surveyed once for ink and gaps.
+struct Survey {
+    clearance: Clearance,
+    climber: Climber,
+    /// The way around everything runs between the ink and the frame, and is wider than any gap of the ink.
+    outside_mm: f64,
+}
+
+impl Survey {
+    fn new(region: &Region) -> Option<Self> {
+        let (mut clearance, (low, high)) = (Clearance::new(region)?, region.bounds_mm()?);
+        let height = |way: &Way| way.narrowest.radius * if way.ahead.is_some() { 1.0 } else { PLACE_SLACK };
+        clearance.ways.sort_by(|a, b| height(b).total_cmp(&height(a)).then(a.ends.cmp(&b.ends)));
+        Some(Self { clearance, climber: Climber::new(region), outside_mm: (high - low).length() })
+    }
+
+    /// The changes of one side, to be asked for one after the other.
+    fn narrowing(&self, ink: bool, chord_mm: f64) -> Narrowing<'_> {
+        let mut changes = changes(&self.clearance, ink, chord_mm);
+        changes.sort_by(|a, b| a.spot.radius.total_cmp(&b.spot.radius));
+        let limit_mm = if ink { f64::INFINITY } else { self.outside_mm };
+        Narrowing {
+            climber: &self.climber,
+            chord_mm,
+            limit_mm,
+            changes: changes.into_iter().peekable(),
+            known: Vec::new(),
+        }
+    }
 }
 
 /// A place where the counts may change.
@@ -94,35 +165,56 @@ enum Doubt {
     Pass([[Spot; 2]; 2]),
 }
 
-/// The narrowest change that holds when the peaks in question are climbed on the boundary itself.
-fn first_change(clearance: &Clearance, climber: &Climber, ink: bool, chord_mm: f64) -> Option<Narrowest> {
-    let mut changes = changes(clearance, ink, chord_mm);
-    changes.sort_by(|a, b| a.spot.radius.total_cmp(&b.spot.radius));
-    let mut best: Option<Spot> = None;
-    for Change { spot, doubt } in changes {
-        if best.is_some_and(|b| b.radius <= spot.radius) {
-            break;
-        }
-        let needed = spot.radius + chord_mm;
-        let high = |side: &[Spot; 2]| {
-            side.iter().any(|s| s.radius > needed) || side.iter().any(|&s| climber.climb(s).radius > needed)
-        };
-        let spot = match doubt {
-            // The highest place may be a pass, from where no direction leads up; so begin around it too.
-            Doubt::Peak => {
-                let turns = (0..STARTS).map(|i| i as f64 * std::f64::consts::TAU / STARTS as f64);
-                let around = turns.map(|turn| spot.at + DVec2::from_angle(turn) * (ASIDE * spot.radius));
-                let climbs = around.map(|at| climber.climb(Spot { at, ..spot }));
-                climbs.fold(climber.climb(spot), |a, b| if b.radius > a.radius { b } else { a })
+/// The changes that hold when the peaks in question are climbed on the boundary itself, the narrowest first.
+struct Narrowing<'a> {
+    climber: &'a Climber,
+    chord_mm: f64,
+    /// What is as wide or wider is no narrow place.
+    limit_mm: f64,
+    /// Those not looked at, by their least width.
+    changes: Peekable<vec::IntoIter<Change>>,
+    /// Those looked at and not handed out, by their width, the narrowest last.
+    known: Vec<Spot>,
+}
+
+impl Narrowing<'_> {
+    /// The next one. No more climbing is done than it takes to know that it is.
+    fn next(&mut self) -> Option<Narrowest> {
+        while let Some(change) = self.changes.peek() {
+            if self.known.last().is_some_and(|best| best.radius <= change.spot.radius) {
+                break;
             }
-            Doubt::Pass(sides) if !sides.iter().all(high) => continue,
-            // An edge that the triangulation did not look at is in the way: this is no pass.
-            _ if climber.look(spot.at).radius < spot.radius * (1.0 - ROUNDING) => continue,
-            _ => spot,
-        };
-        best = best.filter(|b| b.radius <= spot.radius).or(Some(spot));
+            let change = self.changes.next()?;
+            if let Some(spot) = held(change, self.climber, self.chord_mm) {
+                let at = self.known.partition_point(|known| known.radius > spot.radius);
+                self.known.insert(at, spot);
+            }
+        }
+        let spot = self.known.pop()?;
+        let found = Narrowest { width_mm: 2.0 * spot.radius, position_mm: spot.at };
+        (found.width_mm < self.limit_mm).then_some(found)
     }
-    best.map(|spot| Narrowest { width_mm: 2.0 * spot.radius, position_mm: spot.at })
+}
+
+/// Where a change is in truth, if it is one.
+fn held(Change { spot, doubt }: Change, climber: &Climber, chord_mm: f64) -> Option<Spot> {
+    let needed = spot.radius + chord_mm;
+    let high = |side: &[Spot; 2]| {
+        side.iter().any(|s| s.radius > needed) || side.iter().any(|&s| climber.climb(s).radius > needed)
+    };
+    match doubt {
+        // The highest place may be a pass, from where no direction leads up; so begin around it too.
+        Doubt::Peak => {
+            let turns = (0..STARTS).map(|i| i as f64 * std::f64::consts::TAU / STARTS as f64);
+            let around = turns.map(|turn| spot.at + DVec2::from_angle(turn) * (ASIDE * spot.radius));
+            let climbs = around.map(|at| climber.climb(Spot { at, ..spot }));
+            Some(climbs.fold(climber.climb(spot), |a, b| if b.radius > a.radius { b } else { a }))
+        }
+        Doubt::Pass(sides) if !sides.iter().all(high) => None,
+        // An edge that the triangulation did not look at is in the way: this is no pass.
+        _ if climber.look(spot.at).radius < spot.radius * (1.0 - ROUNDING) => None,
+        _ => Some(spot),
+    }
 }
 
 /// The places where the counts of one side may change.
@@ -224,6 +316,33 @@ mod tests {
         assert_eq!(min_feature(&dumbbell, 0.9, 0.01), None);
         // A bay of constant width has no mouth, and closes evenly.
         assert_eq!(min_gap(&dumbbell, 100.0, 0.01), None);
+    }
+
+    #[test]
+    fn the_narrowest_places_in_order() {
+        // Five blocks in a row, joined by necks of growing width, and an island that two gaps part from them.
+        let mut paths: Vec<Vec<DVec2>> =
+            (0..5).map(|i| rectangle(10.0 * f64::from(i), 0.0, 6.0, 6.0)).collect();
+        for i in 0..4 {
+            let width = 0.2 + 0.1 * f64::from(i);
+            paths.push(rectangle(10.0 * f64::from(i) + 6.0, 3.0 - width / 2.0, 4.0, width));
+        }
+        paths.push(rectangle(0.0, 6.3, 46.0, 2.0));
+        let grid = Grid::for_extent(128.0).unwrap();
+        let paths: Vec<Vec<GridPoint>> =
+            paths.iter().map(|path| path.iter().map(|&p| grid.snap(p).unwrap()).collect()).collect();
+        let row = Region::fill(grid, &paths, FillRule::NonZero);
+        assert_eq!((row.components(), row.holes()), (2, 0));
+        let places = narrow_places(&row, 10, 1.0, 0.01);
+        let widths: Vec<f64> = places.ink.iter().map(|p| (p.width_mm * 1e3).round() / 1e3).collect();
+        assert_eq!(widths, [0.2, 0.3, 0.4, 0.5]);
+        let between = |p: &Narrowest, i: f64| (10.0 * i + 5.9..10.0 * i + 10.1).contains(&p.position_mm.x);
+        assert!((0..4u8).all(|i| between(&places.ink[usize::from(i)], i.into())), "{places:?}");
+        assert!(places.gaps.iter().all(|p| (p.width_mm - 0.3).abs() < 1e-3), "{places:?}");
+        assert_eq!(narrow_places(&row, 2, 1.0, 0.01).ink, places.ink[..2]);
+        assert_eq!(narrow_places(&row, 10, 0.35, 0.01).ink, places.ink[..2]);
+        let found = super::widths(&row, 0.01);
+        assert_eq!((found.feature, found.gap), (Some(places.ink[0]), Some(places.gaps[0])));
     }
 
     #[test]

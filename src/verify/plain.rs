@@ -4,29 +4,33 @@
 //! perhaps in groups, with presentation attributes only. Anything more is left to [`super::drawn`].
 
 use glam::DVec2;
-use kurbo::BezPath;
 use roxmltree::{Document, Node};
 
 use super::drawing::{Drawing, Shape, element_name, upright};
 use super::error::VerifyError;
+use super::path_data::bez_path;
 use crate::planar::FillRule;
 
 /// What a group hands down to the paths in it.
 #[derive(Clone, Copy)]
-struct Inherited {
+struct Inherited<'a> {
     filled: bool,
     rule: FillRule,
+    /// Whether paths are lines to follow, whatever paints them.
+    lines: bool,
+    /// The id of the nearest group.
+    layer: &'a str,
 }
 
-/// The drawing, or `None` when the file is not plain.
+/// The drawing, or `None` when the file is not plain. Of cut `lines`, strokes and paths without fill are paths like any.
 ///
 /// # Errors
 /// [`VerifyError::PathData`].
-pub(super) fn read(document: &Document<'_>) -> Result<Option<Drawing>, VerifyError> {
+pub(super) fn read(document: &Document<'_>, lines: bool) -> Result<Option<Drawing>, VerifyError> {
     let root = document.root_element();
     let Some(page_mm) = page(root) else { return Ok(None) };
     let mut shapes = Vec::new();
-    let inherited = Inherited { filled: true, rule: FillRule::NonZero };
+    let inherited = Inherited { filled: true, rule: FillRule::NonZero, lines, layer: "" };
     let Some(inherited) = attributes(root, inherited, &["width", "height", "viewBox", "version"]) else {
         return Ok(None);
     };
@@ -47,9 +51,9 @@ fn page(root: Node<'_, '_>) -> Option<DVec2> {
 }
 
 /// Reads the children of an element; whether they were all plain.
-fn children(
-    parent: Node<'_, '_>,
-    inherited: Inherited,
+fn children<'a>(
+    parent: Node<'a, '_>,
+    inherited: Inherited<'a>,
     height_mm: f64,
     shapes: &mut Vec<Shape>,
 ) -> Result<bool, VerifyError> {
@@ -57,13 +61,16 @@ fn children(
         let plain = match node.tag_name().name() {
             "title" | "desc" | "metadata" => true,
             "g" => match attributes(node, inherited, &[]) {
-                Some(inherited) => children(node, inherited, height_mm, shapes)?,
+                Some(inherited) => {
+                    let layer = node.attribute("id").unwrap_or(inherited.layer);
+                    children(node, Inherited { layer, ..inherited }, height_mm, shapes)?
+                }
                 None => false,
             },
             "path" => match attributes(node, inherited, &["d"]) {
-                Some(Inherited { filled, rule }) => {
-                    if filled {
-                        shapes.extend(shape(node, rule, height_mm)?);
+                Some(inherited) => {
+                    if inherited.filled || inherited.lines {
+                        shapes.extend(shape(node, inherited, height_mm)?);
                     }
                     true
                 }
@@ -79,7 +86,7 @@ fn children(
 }
 
 /// What an element with only plain attributes, and `own` ones, hands down.
-fn attributes(node: Node<'_, '_>, inherited: Inherited, own: &[&str]) -> Option<Inherited> {
+fn attributes<'a>(node: Node<'a, '_>, inherited: Inherited<'a>, own: &[&str]) -> Option<Inherited<'a>> {
     let mut result = inherited;
     for attribute in node.attributes() {
         match (attribute.name(), attribute.value().trim()) {
@@ -90,6 +97,7 @@ fn attributes(node: Node<'_, '_>, inherited: Inherited, own: &[&str]) -> Option<
             ("fill-rule", "evenodd") => result.rule = FillRule::EvenOdd,
             ("fill-rule", "nonzero") => result.rule = FillRule::NonZero,
             ("stroke", "none") => {}
+            ("stroke" | "stroke-width", _) if result.lines => {}
             _ => return None,
         }
     }
@@ -102,17 +110,18 @@ fn is_opaque(paint: &str) -> bool {
     paint.strip_prefix('#').map_or(matches!(paint, "black" | "white" | "currentColor"), hex)
 }
 
-fn shape(node: Node<'_, '_>, rule: FillRule, height_mm: f64) -> Result<Option<Shape>, VerifyError> {
+fn shape(node: Node<'_, '_>, inherited: Inherited<'_>, height_mm: f64) -> Result<Option<Shape>, VerifyError> {
     let Some(data) = node.attribute("d") else { return Ok(None) };
     let element = element_name("path", node.attribute("id"));
     let line = node.document().text_pos_at(node.range().start).row;
     if data.trim().is_empty() {
         return Ok(None);
     }
-    match BezPath::from_svg(data) {
+    match bez_path(data) {
         Ok(mut path) => {
             path.apply_affine(upright(height_mm));
-            Ok(Some(Shape { element, line, path, rule, is_stroke: false }))
+            let (rule, layer) = (inherited.rule, inherited.layer.to_owned());
+            Ok(Some(Shape { element, line, path, rule, layer, is_stroke: false }))
         }
         Err(e) => {
             Err(VerifyError::PathData { element, line, message: format!("its data cannot be read: {e}") })

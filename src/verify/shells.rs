@@ -3,14 +3,17 @@
 //! Corners with the same `f32` coordinates are one vertex; nothing else is welded. Facets that share an edge
 //! are one shell. A shell is closed when each of its edges is used exactly twice, in opposite directions;
 //! then its genus is 1 − χ/2 with χ = V − E + F. Vertices are counted as fans of facets, so that a point at
-//! which two fans meet (a fault) does not upset the genus. Excluded: facets that cross each other.
+//! which two fans meet (a fault) does not upset the genus. Facets that cross each other are looked for by
+//! [`super::crossings`].
 
 use std::fmt;
 
 use glam::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
+use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::crossings::crossings;
 use crate::planar::Sets;
 
 /// Faults that a report prints for people; the list itself is complete.
@@ -23,9 +26,9 @@ pub(super) struct Facet {
     pub(super) corners: [[f32; 3]; 3],
 }
 
-/// What an STL holds, in millimetres.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct StlReport {
+/// What a mesh file (STL, 3MF or OBJ) holds, in millimetres.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct MeshReport {
     /// The number of facets.
     pub triangles: usize,
     /// The number of different corners.
@@ -39,11 +42,11 @@ pub struct StlReport {
     /// The smallest and largest coordinates; `None` without facets.
     pub bounds_mm: Option<([f64; 3], [f64; 3])>,
     /// Why this is not the boundary of a solid; empty when it is.
-    pub faults: Vec<StlFault>,
+    pub faults: Vec<MeshFault>,
 }
 
 /// One connected surface.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Shell {
     /// The number of facets.
     pub triangles: usize,
@@ -54,10 +57,10 @@ pub struct Shell {
 }
 
 /// A place where facets are not the boundary of a solid. Facets count from 0, in the order of the file.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct StlFault {
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct MeshFault {
     /// What is wrong.
-    pub kind: StlFaultKind,
+    pub kind: MeshFaultKind,
     /// The facet, or the first one of several.
     pub facet: usize,
     /// Where, in millimetres.
@@ -65,9 +68,9 @@ pub struct StlFault {
 }
 
 /// The ways in which facets can fail to bound a solid.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum StlFaultKind {
+pub enum MeshFaultKind {
     /// The facet has no area.
     Degenerate,
     /// The facet has the corners of an earlier one.
@@ -84,26 +87,29 @@ pub enum StlFaultKind {
     PinchedVertex,
     /// The shell of this facet faces inwards and is no cavity of another.
     InsideOut,
+    /// Another facet crosses this one, or touches it elsewhere than in corners that both have.
+    Crossing,
 }
 
-impl fmt::Display for StlFault {
+impl fmt::Display for MeshFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let what = match self.kind {
-            StlFaultKind::Degenerate => "has no area",
-            StlFaultKind::Duplicate => "has the corners of an earlier facet",
-            StlFaultKind::Normal => "has a normal against its winding",
-            StlFaultKind::OpenEdge => "has an edge without a second facet",
-            StlFaultKind::FlippedEdge => "runs along an edge in the same direction as another facet",
-            StlFaultKind::CrowdedEdge => "has an edge with more than two facets",
-            StlFaultKind::PinchedVertex => "has a corner in which surfaces meet in one point only",
-            StlFaultKind::InsideOut => "is on a shell that faces inwards",
+            MeshFaultKind::Degenerate => "has no area",
+            MeshFaultKind::Duplicate => "has the corners of an earlier facet",
+            MeshFaultKind::Normal => "has a normal against its winding",
+            MeshFaultKind::OpenEdge => "has an edge without a second facet",
+            MeshFaultKind::FlippedEdge => "runs along an edge in the same direction as another facet",
+            MeshFaultKind::CrowdedEdge => "has an edge with more than two facets",
+            MeshFaultKind::PinchedVertex => "has a corner in which surfaces meet in one point only",
+            MeshFaultKind::InsideOut => "is on a shell that faces inwards",
+            MeshFaultKind::Crossing => "crosses or touches another facet",
         };
         let [x, y, z] = self.position_mm;
         write!(f, "facet {} {what} at ({x:.4}, {y:.4}, {z:.4}) mm", self.facet)
     }
 }
 
-impl fmt::Display for StlReport {
+impl fmt::Display for MeshReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "triangles    {}", self.triangles)?;
         writeln!(f, "shells       {}", self.shells.len())?;
@@ -115,7 +121,7 @@ impl fmt::Display for StlReport {
 }
 
 /// Counts shells and genus, and looks for faults.
-pub(super) fn survey(facets: &[Facet]) -> StlReport {
+pub(super) fn survey(facets: &[Facet]) -> MeshReport {
     let soup = Soup::weld(facets);
     let mut faults = soup.facet_faults(facets);
     let mut shells = Sets::new(facets.len());
@@ -126,9 +132,9 @@ pub(super) fn survey(facets: &[Facet]) -> StlReport {
     for edge in sides.chunk_by(|a, b| a.ends == b.ends) {
         let fault = match edge {
             [a, b] if a.forward != b.forward => None,
-            [_] => Some(StlFaultKind::OpenEdge),
-            [_, _] => Some(StlFaultKind::FlippedEdge),
-            _ => Some(StlFaultKind::CrowdedEdge),
+            [_] => Some(MeshFaultKind::OpenEdge),
+            [_, _] => Some(MeshFaultKind::FlippedEdge),
+            _ => Some(MeshFaultKind::CrowdedEdge),
         };
         for pair in edge.windows(2) {
             shells.join(pair[0].facet, pair[1].facet);
@@ -139,14 +145,19 @@ pub(super) fn survey(facets: &[Facet]) -> StlReport {
         edges.push((edge[0].facet, fault.is_none()));
         faults.extend(fault.map(|kind| {
             let [p, q] = edge[0].ends.map(|v| soup.at[v]);
-            StlFault { kind, facet: edge[0].facet, position_mm: ((p + q) * 0.5).to_array() }
+            MeshFault { kind, facet: edge[0].facet, position_mm: ((p + q) * 0.5).to_array() }
         }));
     }
     faults.extend(soup.pinched(&mut fans));
     let (shells, inside_out) = soup.shells(&mut shells, &mut fans, &edges);
     faults.extend(inside_out);
+    faults.extend(crossings(&soup.at, &soup.facets).into_iter().map(|(facet, position)| MeshFault {
+        kind: MeshFaultKind::Crossing,
+        facet,
+        position_mm: position.to_array(),
+    }));
     let corner = |pick: fn(DVec3, DVec3) -> DVec3| soup.at.iter().copied().reduce(pick);
-    StlReport {
+    MeshReport {
         triangles: facets.len(),
         vertices: soup.at.len(),
         genus: shells.iter().filter_map(|s| s.genus).sum(),
@@ -212,30 +223,30 @@ impl Soup {
         sides
     }
 
-    fn facet_faults(&self, given: &[Facet]) -> Vec<StlFault> {
+    fn facet_faults(&self, given: &[Facet]) -> Vec<MeshFault> {
         let mut faults = Vec::new();
         let mut seen: FxHashSet<[usize; 3]> = FxHashSet::default();
         for (facet, &corners) in self.facets.iter().enumerate() {
             let [a, b, c] = self.points(facet);
             let position_mm = ((a + b + c) / 3.0).to_array();
-            let mut add = |kind| faults.push(StlFault { kind, facet, position_mm });
+            let mut add = |kind| faults.push(MeshFault { kind, facet, position_mm });
             let normal = (b - a).cross(c - a);
             if normal == DVec3::ZERO {
-                add(StlFaultKind::Degenerate);
+                add(MeshFaultKind::Degenerate);
             } else if normal.dot(DVec3::from_array(given[facet].normal.map(f64::from))) < 0.0 {
-                add(StlFaultKind::Normal);
+                add(MeshFaultKind::Normal);
             }
             let mut sorted = corners;
             sorted.sort_unstable();
             if !seen.insert(sorted) {
-                add(StlFaultKind::Duplicate);
+                add(MeshFaultKind::Duplicate);
             }
         }
         faults
     }
 
     /// The vertices with more than one fan of facets.
-    fn pinched(&self, fans: &mut Sets) -> Vec<StlFault> {
+    fn pinched(&self, fans: &mut Sets) -> Vec<MeshFault> {
         let mut fan_of = vec![usize::MAX; self.at.len()];
         let mut reported = vec![false; self.at.len()];
         let mut faults = Vec::new();
@@ -246,7 +257,7 @@ impl Soup {
                     fan_of[v] = fan;
                 } else if fan_of[v] != fan && !std::mem::replace(&mut reported[v], true) {
                     let position_mm = self.at[v].to_array();
-                    faults.push(StlFault { kind: StlFaultKind::PinchedVertex, facet, position_mm });
+                    faults.push(MeshFault { kind: MeshFaultKind::PinchedVertex, facet, position_mm });
                 }
             }
         }
@@ -259,7 +270,7 @@ impl Soup {
         sets: &mut Sets,
         fans: &mut Sets,
         edges: &[(usize, bool)],
-    ) -> (Vec<Shell>, Vec<StlFault>) {
+    ) -> (Vec<Shell>, Vec<MeshFault>) {
         let mut number = vec![usize::MAX; self.facets.len()];
         let mut tallies: Vec<Tally> = Vec::new();
         // Volumes are taken from a point of the solid, as far-off coordinates would cancel badly.
@@ -290,7 +301,7 @@ impl Soup {
                 |t: &&Tally| t.volume > 0.0 && t.low.cmplt(tally.low).all() && t.high.cmpgt(tally.high).all();
             if tallies.iter().find(around).is_none() {
                 let position_mm = self.points(tally.first)[0].to_array();
-                faults.push(StlFault { kind: StlFaultKind::InsideOut, facet: tally.first, position_mm });
+                faults.push(MeshFault { kind: MeshFaultKind::InsideOut, facet: tally.first, position_mm });
             }
         }
         (tallies.iter().map(Tally::shell).collect(), faults)
@@ -364,7 +375,7 @@ mod tests {
         [facet(0, 1, 2), facet(0, 2, 3)]
     }
 
-    fn kinds(report: &StlReport) -> Vec<StlFaultKind> {
+    fn kinds(report: &MeshReport) -> Vec<MeshFaultKind> {
         let mut kinds: Vec<_> = report.faults.iter().map(|f| f.kind).collect();
         kinds.dedup();
         kinds
@@ -403,13 +414,13 @@ mod tests {
         assert_eq!((volumes, kinds(&report)), (vec![-1.0, 27.0], vec![]));
         let mut inverted = cubes(&ring());
         inverted.iter_mut().for_each(|f| f.corners.swap(0, 1));
-        assert_eq!(kinds(&survey(&inverted)), [StlFaultKind::InsideOut]);
+        assert_eq!(kinds(&survey(&inverted)), [MeshFaultKind::InsideOut]);
     }
 
     #[test]
     fn an_edge_of_four_facets_is_a_fault() {
         let report = survey(&cubes(&[[0, 0, 0], [1, 1, 0]]));
-        assert_eq!(kinds(&report), [StlFaultKind::CrowdedEdge]);
+        assert_eq!(kinds(&report), [MeshFaultKind::CrowdedEdge]);
         assert_eq!(report.faults[0].position_mm, [1.0, 1.0, 0.5]);
         assert!(report.shells.iter().all(|s| s.genus.is_none()));
     }
@@ -417,7 +428,7 @@ mod tests {
     #[test]
     fn a_pinched_vertex_is_a_fault_and_leaves_the_counts() {
         let report = survey(&cubes(&[[0, 0, 0], [1, 1, 1]]));
-        assert_eq!(kinds(&report), [StlFaultKind::PinchedVertex]);
+        assert_eq!(kinds(&report), [MeshFaultKind::PinchedVertex]);
         assert_eq!(report.faults[0].position_mm, [1.0; 3]);
         assert_eq!((report.shells.len(), report.genus, report.vertices), (2, 0, 15));
     }
@@ -427,9 +438,9 @@ mod tests {
         let mut facets = cubes(&[[0, 0, 0]]);
         let last = facets.pop().unwrap();
         let open = survey(&facets);
-        assert_eq!((kinds(&open), open.shells[0].genus), (vec![StlFaultKind::OpenEdge], None));
+        assert_eq!((kinds(&open), open.shells[0].genus), (vec![MeshFaultKind::OpenEdge], None));
         facets.push(Facet { corners: [last.corners[1], last.corners[0], last.corners[2]], ..last });
-        assert_eq!(kinds(&survey(&facets)), [StlFaultKind::FlippedEdge]);
+        assert_eq!(kinds(&survey(&facets)), [MeshFaultKind::FlippedEdge]);
         facets[11] = last;
         facets[3].normal = {
             let [a, b, c] = facets[3].corners.map(|p| DVec3::from_array(p.map(f64::from)));
@@ -437,10 +448,10 @@ mod tests {
             [-n.x as f32, -n.y as f32, -n.z as f32]
         };
         let turned = survey(&facets);
-        assert_eq!((kinds(&turned), turned.faults[0].facet), (vec![StlFaultKind::Normal], 3));
+        assert_eq!((kinds(&turned), turned.faults[0].facet), (vec![MeshFaultKind::Normal], 3));
         facets.push(last);
-        assert!(kinds(&survey(&facets)).contains(&StlFaultKind::Duplicate));
+        assert!(kinds(&survey(&facets)).contains(&MeshFaultKind::Duplicate));
         facets.push(Facet { corners: [[0.0; 3], [0.5; 3], [1.0; 3]], ..last });
-        assert!(survey(&facets).faults.iter().any(|f| f.kind == StlFaultKind::Degenerate && f.facet == 13));
+        assert!(survey(&facets).faults.iter().any(|f| f.kind == MeshFaultKind::Degenerate && f.facet == 13));
     }
 }

@@ -1,7 +1,7 @@
 //! The facets of an STL file, binary or ASCII.
 
 use super::error::VerifyError;
-use super::shells::{Facet, StlReport, survey};
+use super::shells::{Facet, MeshReport, survey};
 
 /// Header, count, and each facet of a binary STL, in bytes.
 const HEADER: usize = 80;
@@ -18,7 +18,7 @@ const MAX_BYTES: usize = 1 << 30;
 /// # Errors
 /// [`VerifyError`] when the bytes are no whole STL. What is wrong with the solid itself is a fault of the
 /// report.
-pub fn read_stl(bytes: &[u8]) -> Result<StlReport, VerifyError> {
+pub fn read_stl(bytes: &[u8]) -> Result<MeshReport, VerifyError> {
     if bytes.len() > MAX_BYTES {
         return Err(VerifyError::TooLarge { bytes: bytes.len(), limit: MAX_BYTES });
     }

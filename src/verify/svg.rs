@@ -5,13 +5,14 @@ use std::fmt;
 use glam::DVec2;
 use roxmltree::{Document, ParsingOptions};
 use rustc_hash::FxHashSet;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::drawing::{Drawing, Shape};
 use super::error::VerifyError;
 use super::narrowest::{Narrowest, widths};
 use super::{drawn, plain};
-use crate::planar::{Contour, Grid, Region, RegionError};
+use crate::planar::{Contour, Fault, Grid, Region, RegionError};
 
 /// The largest file that is read; larger ones are not ornaments but attacks on memory.
 const MAX_BYTES: usize = 256 << 20;
@@ -21,7 +22,7 @@ const MAX_NODES: u32 = 4_000_000;
 const OVERLAP_PART: f64 = 1e-9;
 
 /// What an SVG holds. Lengths are millimetres from the page's lower left corner, y up.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct SvgReport {
     /// The number of connected components of the ink.
     pub components: usize,
@@ -31,9 +32,11 @@ pub struct SvgReport {
     pub area_mm2: f64,
     /// The lower left and upper right corner of the ink; `None` when there is none.
     #[serde(serialize_with = "super::json::corners")]
+    #[schemars(with = "Option<[[f64; 2]; 2]>")]
     pub bounds_mm: Option<(DVec2, DVec2)>,
     /// Width and height of the page.
     #[serde(serialize_with = "super::json::point")]
+    #[schemars(with = "[f64; 2]")]
     pub page_mm: DVec2,
     /// The number of vertices after curves were made polygons.
     pub vertices: usize,
@@ -51,19 +54,21 @@ pub struct SvgReport {
 }
 
 /// Something in an SVG that a cutter or a slicer may stumble over. It does not change the counts.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum SvgFault {
     /// Contours cross or touch themselves or each other.
     Crossing {
         /// Where.
         #[serde(serialize_with = "super::json::point")]
+        #[schemars(with = "[f64; 2]")]
         position_mm: DVec2,
     },
     /// A contour covers ink twice, or is a hole outside of any ink.
     Nesting {
         /// A point of the contour.
         #[serde(serialize_with = "super::json::point")]
+        #[schemars(with = "[f64; 2]")]
         position_mm: DVec2,
     },
     /// Several elements paint the same area.
@@ -77,6 +82,7 @@ pub enum SvgFault {
         element: String,
         /// Where the subpath begins.
         #[serde(serialize_with = "super::json::point")]
+        #[schemars(with = "[f64; 2]")]
         position_mm: DVec2,
     },
     /// A subpath without area, or one whose loops cancel.
@@ -85,12 +91,14 @@ pub enum SvgFault {
         element: String,
         /// Where the subpath begins.
         #[serde(serialize_with = "super::json::point")]
+        #[schemars(with = "[f64; 2]")]
         position_mm: DVec2,
     },
     /// Ink beyond the page.
     OutsidePage {
         /// A corner of the ink's bounding box that is beyond it.
         #[serde(serialize_with = "super::json::point")]
+        #[schemars(with = "[f64; 2]")]
         position_mm: DVec2,
     },
 }
@@ -127,10 +135,21 @@ impl fmt::Display for SvgFault {
 /// # Errors
 /// [`VerifyError`] when the bytes are no SVG, or when something in it cannot be judged.
 pub fn read_svg(bytes: &[u8], chord_mm: f64) -> Result<SvgReport, VerifyError> {
+    let text = text(bytes)?;
+    let document = parsed(text)?;
+    count(&drawing(&document, chord_mm, false)?, chord_mm)
+}
+
+/// The text of a file that is not too large.
+pub(super) fn text(bytes: &[u8]) -> Result<&str, VerifyError> {
     if bytes.len() > MAX_BYTES {
         return Err(VerifyError::TooLarge { bytes: bytes.len(), limit: MAX_BYTES });
     }
-    let text = std::str::from_utf8(bytes).map_err(|e| VerifyError::NotText { offset: e.valid_up_to() })?;
+    std::str::from_utf8(bytes).map_err(|e| VerifyError::NotText { offset: e.valid_up_to() })
+}
+
+/// The document, if it is an SVG.
+pub(super) fn parsed(text: &str) -> Result<Document<'_>, VerifyError> {
     let options = ParsingOptions { allow_dtd: true, nodes_limit: MAX_NODES, ..ParsingOptions::default() };
     let document = Document::parse_with_options(text, options)
         .map_err(|e| VerifyError::Xml { message: e.to_string() })?;
@@ -138,11 +157,15 @@ pub fn read_svg(bytes: &[u8], chord_mm: f64) -> Result<SvgReport, VerifyError> {
     if root != "svg" {
         return Err(VerifyError::NotSvg { found: root.to_owned() });
     }
-    let drawing = match plain::read(&document)? {
-        Some(drawing) => drawing,
-        None => drawn::read(&document, chord_mm)?,
-    };
-    count(&drawing, chord_mm)
+    Ok(document)
+}
+
+/// What is drawn: areas, or cut `lines`.
+pub(super) fn drawing(document: &Document<'_>, chord_mm: f64, lines: bool) -> Result<Drawing, VerifyError> {
+    match plain::read(document, lines)? {
+        Some(drawing) => Ok(drawing),
+        None => drawn::read(document, chord_mm, lines),
+    }
 }
 
 fn count(drawing: &Drawing, chord_mm: f64) -> Result<SvgReport, VerifyError> {
@@ -185,7 +208,7 @@ fn count(drawing: &Drawing, chord_mm: f64) -> Result<SvgReport, VerifyError> {
     if painted_mm2 - area_mm2 > OVERLAP_PART * painted_mm2 {
         faults.push(SvgFault::Overlap { area_mm2: painted_mm2 - area_mm2 });
     }
-    faults.extend(contour_faults(&region, contours));
+    faults.extend(contour_faults(&region, contours).into_iter().map(SvgFault::from));
     faults.extend(beyond_page(&region, drawing.page_mm, chord_mm));
     let widths = widths(&region, chord_mm);
     Ok(SvgReport {
@@ -218,7 +241,7 @@ fn grid<'a>(
 }
 
 /// Where the file's own contours are not those of the region that they fill.
-fn contour_faults(region: &Region, contours: Vec<Contour>) -> Vec<SvgFault> {
+pub(super) fn contour_faults(region: &Region, contours: Vec<Contour>) -> Vec<Fault> {
     let found: FxHashSet<&Contour> = region.contours().collect();
     let given: Vec<Contour> = contours.into_iter().map(|c| oriented(c, &found)).collect();
     if given.len() == found.len() && given.iter().all(|c| found.contains(c)) {
@@ -226,16 +249,16 @@ fn contour_faults(region: &Region, contours: Vec<Contour>) -> Vec<SvgFault> {
     }
     match Region::from_contours(region.grid(), given) {
         Ok(_) => Vec::new(),
-        Err(RegionError::Invalid { faults }) => faults.into_iter().map(SvgFault::from).collect(),
+        Err(RegionError::Invalid { faults }) => faults,
         Err(RegionError::Grid(e)) => unreachable!("the contours are on the grid: {e}"),
     }
 }
 
-impl From<crate::planar::Fault> for SvgFault {
-    fn from(fault: crate::planar::Fault) -> Self {
+impl From<Fault> for SvgFault {
+    fn from(fault: Fault) -> Self {
         match fault {
-            crate::planar::Fault::Crossing(position_mm) => Self::Crossing { position_mm },
-            crate::planar::Fault::Nesting(position_mm) => Self::Nesting { position_mm },
+            Fault::Crossing(position_mm) => Self::Crossing { position_mm },
+            Fault::Nesting(position_mm) => Self::Nesting { position_mm },
         }
     }
 }

@@ -9,16 +9,18 @@
 use std::fmt;
 
 use glam::DVec2;
+use schemars::JsonSchema;
 use serde::Serialize;
 use thiserror::Error;
 
 use crate::planar::{GridPoint, Region};
 
 /// What the tiling has that copies of a tile make.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Tiling {
     /// The distance from one copy to the next, to the right and up, in millimetres.
     #[serde(serialize_with = "super::json::point")]
+    #[schemars(with = "[f64; 2]")]
     pub pitch_mm: DVec2,
     /// The intervals in which a copy joins the next to the right.
     pub joins_across: usize,

@@ -27,6 +27,7 @@ mod trial;
 pub use error::BridgeError;
 
 use glam::DVec2;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::planar::Region;
@@ -34,7 +35,7 @@ use ground::Side;
 use trial::Effort;
 
 /// Components and holes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Counts {
     /// Connected components (b0).
     pub components: usize,
@@ -72,7 +73,7 @@ pub struct BridgeOptions {
 }
 
 /// What a bridge is for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BridgeKind {
     /// A strut that joins two components.
@@ -107,7 +108,7 @@ impl BridgeKind {
 }
 
 /// One bridge. Positions and lengths are millimetres.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Bridge {
     /// What it is for.
     pub kind: BridgeKind,

@@ -53,11 +53,17 @@ impl Replay<'_> {
         let sha256 = hexadecimal(bytes);
         let (format, found) = match counted {
             Counted::Svg(report) => ("svg", (report.components as i64, report.holes as i64)),
-            Counted::Stl(report) => {
+            Counted::Cut(report, format) => {
+                if let Some(first) = report.faults.first() {
+                    self.fault(CertificatePlace::File, format!("the cut lines are not sound: {first}"));
+                }
+                (format, (report.components as i64, report.holes as i64))
+            }
+            Counted::Mesh { format, report } => {
                 if let Some(first) = report.faults.first() {
                     self.fault(CertificatePlace::File, format!("the solid is not sound: {first}"));
                 }
-                ("stl", (report.shells.len() as i64, report.genus))
+                (format, (report.shells.len() as i64, report.genus))
             }
         };
         let of_format = |f: &&File| f.format == format;

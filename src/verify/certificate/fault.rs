@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use thiserror::Error;
 
@@ -29,7 +30,7 @@ pub enum CertificateError {
 }
 
 /// Where a certificate does not hold.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Error)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema, Error)]
 #[error("{place}: {fault}")]
 pub struct CertificateFault {
     /// The place.
@@ -39,7 +40,7 @@ pub struct CertificateFault {
 }
 
 /// A part of a certificate.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(tag = "part", rename_all = "snake_case")]
 pub enum CertificatePlace {
     /// The exemplar, if it was given.
@@ -101,7 +102,7 @@ impl fmt::Display for CertificatePlace {
 }
 
 /// What replaying a certificate came to.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct CertificateReport {
     /// Whether every step follows and the file is the one that it speaks of.
     pub holds: bool,

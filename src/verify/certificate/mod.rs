@@ -18,7 +18,8 @@ use serde_json::Value;
 
 use self::form::{Certificate, Shape, Steps, VERSION};
 use self::steps::Replay;
-use super::shells::StlReport;
+use super::cutlines::CutReport;
+use super::shells::MeshReport;
 use super::svg::SvgReport;
 
 pub use fault::{CertificateError, CertificateFault, CertificatePlace, CertificateReport};
@@ -28,8 +29,15 @@ pub use fault::{CertificateError, CertificateFault, CertificatePlace, Certificat
 pub enum Counted<'a> {
     /// A drawing.
     Svg(&'a SvgReport),
+    /// Cut lines, in a file with this extension.
+    Cut(&'a CutReport, &'static str),
     /// A solid: a shell for each component, a tunnel for each hole.
-    Stl(&'a StlReport),
+    Mesh {
+        /// `stl`, `3mf` or `obj`.
+        format: &'a str,
+        /// What was found in it.
+        report: &'a MeshReport,
+    },
 }
 
 /// Replays the certificate of `report`, the JSON of a job, for a file with these bytes in which so much was

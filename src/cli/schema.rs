@@ -1,0 +1,127 @@
+//! The JSON schema of every option and of every report, made from the definitions themselves.
+//!
+//! Options are described as the keys of a preset: an object for each command, which allows no other keys. So an editor
+//! that knows schemas completes presets and underlines what is misspelt.
+
+use std::any::TypeId;
+
+use clap::{Arg, ArgAction, Command, CommandFactory};
+use schemars::schema_for;
+use serde_json::{Map, Value, json};
+
+use super::args::Arguments;
+use super::preset::name_of;
+use crate::job::{BandReport, ExtrudeReport, RectReport};
+use crate::verify::{CertificateReport, SvgReport};
+
+/// The schema, as a JSON text.
+pub(super) fn schema() -> String {
+    let program = Arguments::command();
+    let commands = program.get_subcommands().filter(|command| command.get_arguments().any(is_option));
+    let options: Map<String, Value> =
+        commands.map(|command| (command.get_name().to_owned(), options_of(command))).collect();
+    let reports = json!({
+        "band": schema_for!(BandReport),
+        "rect": schema_for!(RectReport),
+        "extrude": schema_for!(ExtrudeReport),
+        "verify-svg": schema_for!(SvgReport),
+        "verify-certificate": schema_for!(CertificateReport),
+    });
+    let schema = json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": format!("Openwork {}: options of each command, and reports", env!("CARGO_PKG_VERSION")),
+        "options": options,
+        "reports": reports,
+    });
+    format!("{schema:#}\n")
+}
+
+/// Whether an argument says something of what is made, and not of the program.
+fn is_option(arg: &Arg) -> bool {
+    !matches!(
+        arg.get_action(),
+        ArgAction::Help | ArgAction::HelpShort | ArgAction::HelpLong | ArgAction::Version
+    )
+}
+
+fn options_of(command: &Command) -> Value {
+    let arguments = || command.get_arguments().filter(|arg| is_option(arg));
+    let properties: Map<String, Value> =
+        arguments().map(|arg| (name_of(arg).to_owned(), option(arg))).collect();
+    json!({
+        "description": command.get_about().map(ToString::to_string),
+        "type": "object",
+        "properties": properties,
+        "required": arguments().filter(|arg| arg.is_required_set()).map(name_of).collect::<Vec<_>>(),
+        "additionalProperties": false,
+    })
+}
+
+fn option(arg: &Arg) -> Value {
+    let mut schema = Map::new();
+    if let Some(help) = arg.get_help() {
+        schema.insert("description".into(), help.to_string().into());
+    }
+    let parser = arg.get_value_parser();
+    let is_of = |types: &[TypeId]| types.iter().any(|of| parser.type_id() == *of);
+    let whole = [TypeId::of::<u16>(), TypeId::of::<u64>(), TypeId::of::<usize>()];
+    let values = arg.get_possible_values();
+    let mut value = Map::new();
+    match arg.get_action() {
+        ArgAction::SetTrue => value.insert("type".into(), "boolean".into()),
+        _ if !values.is_empty() => {
+            let names: Vec<&str> = values.iter().map(|value| value.get_name()).collect();
+            value.insert("enum".into(), names.into())
+        }
+        _ if is_of(&[TypeId::of::<std::path::PathBuf>(), TypeId::of::<String>()]) => {
+            value.insert("type".into(), "string".into())
+        }
+        // A length is a text with a unit or a number; a size of memory and a count are whole or a text.
+        _ if is_of(&whole) => value.insert("type".into(), json!(["integer", "string"])),
+        _ => value.insert("type".into(), json!(["number", "string"])),
+    };
+    match arg.get_action() {
+        ArgAction::Append => {
+            schema.insert("type".into(), "array".into());
+            schema.insert("items".into(), value.into());
+        }
+        _ => schema.extend(value),
+    }
+    if let [default] = arg.get_default_values() {
+        schema.insert("default".into(), default.to_string_lossy().into_owned().into());
+    }
+    schema.into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_option_of_every_command_is_described() {
+        let schema: Value = serde_json::from_str(&schema()).unwrap();
+        let band = &schema["options"]["band"];
+        assert_eq!(band["properties"]["closed-pattern"]["type"], "boolean");
+        assert_eq!(band["properties"]["output"]["type"], "array");
+        assert_eq!(band["properties"]["chord"]["default"], "0.01mm");
+        assert_eq!(band["additionalProperties"], false);
+        let required: Vec<&str> =
+            band["required"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
+        assert!(["exemplar", "along", "output"].iter().all(|name| required.contains(name)), "{required:?}");
+        for (command, options) in schema["options"].as_object().unwrap() {
+            for (name, option) in options["properties"].as_object().unwrap() {
+                assert!(option["description"].is_string(), "{command} {name} has no help");
+            }
+        }
+    }
+
+    #[test]
+    fn reports_are_described_as_they_are_written() {
+        let schema: Value = serde_json::from_str(&schema()).unwrap();
+        for report in ["band", "rect", "extrude"] {
+            let properties = &schema["reports"][report]["properties"];
+            assert_eq!(properties["components"]["type"], "integer", "{report}");
+            assert!(properties["holes"]["description"].is_string(), "{report}");
+        }
+    }
+}

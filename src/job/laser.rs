@@ -1,0 +1,257 @@
+//! Files for a laser or a waterjet: the part as cut lines, with kerf, on a plate, and what cutting takes.
+//!
+//! The contours are moved by half of the kerf and fitted with lines and arcs. Each file is read again: its lines must
+//! be sound, leave as many components and holes as are wanted, and do so too when the kerf is taken off again.
+
+use glam::DVec2;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::error::JobError;
+use super::extrude::name;
+use super::output::{Format, Output, Pending};
+use super::stage::{Clock, Stage};
+use crate::export::{self, Curves, CutLines, CutNumbers, DxfVersion, Layer, Marks, SvgOptions};
+use crate::fabricate::{self, Counts, FallenPiece, SheetSize};
+use crate::planar::{GridPoint, Region};
+use crate::verify::{self, CutReport, Expected};
+
+/// A plate needs so much material around the part, in millimetres, or three kerfs if that is more. Less, and what is
+/// left of its edge breaks or burns away.
+const EDGE_MM: f64 = 1.0;
+const EDGE_KERFS: f64 = 3.0;
+/// How finely files are read again, as a part of the chord error.
+const READ_PART: f64 = 0.125;
+
+/// What files of cut lines are to be like. Lengths are millimetres.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LaserOptions {
+    /// Whether an SVG has cut lines instead of ink. A DXF always has.
+    pub cut: bool,
+    /// The width that the beam burns away; without one, cuts run along the contours themselves.
+    pub kerf_mm: Option<f64>,
+    /// What the lines are made of.
+    pub curves: Curves,
+    /// The release of a DXF.
+    pub dxf_version: DxfVersion,
+    /// The plate in whose middle the part is laid.
+    pub sheet: Option<SheetSize>,
+    /// Whether the part is cut out of the plate as a sign: what is left of the plate is kept, not the part.
+    pub carve: bool,
+}
+
+impl LaserOptions {
+    /// Whether a file of this format has cut lines.
+    pub(super) fn cuts(&self, format: Format) -> bool {
+        format == Format::Dxf || (format == Format::Svg && self.cut)
+    }
+
+    /// Whether a file of this format is made from the cut lines, or shows what they are about.
+    pub(super) fn makes(&self, format: Format) -> bool {
+        self.cuts(format) || (format == Format::Png && self.carve)
+    }
+
+    /// Whether one of the files is.
+    pub(super) fn is_needed(&self, outputs: &[Output]) -> bool {
+        outputs.iter().any(|output| self.makes(output.format()))
+    }
+
+    /// Refuses options that contradict each other or the outputs.
+    ///
+    /// # Errors
+    /// [`JobError::Option`] names the option; [`JobError::Kerf`] and [`JobError::Sheet`] for one out of range.
+    pub fn check(&self, outputs: &[Output]) -> Result<(), JobError> {
+        self.kerf_mm.map_or(Ok(()), fabricate::check_kerf)?;
+        self.sheet.map_or(Ok(()), SheetSize::check)?;
+        let refuse = |option, found: &str, wanted: &str| {
+            Err(JobError::Option { option, found: found.to_owned(), wanted: wanted.to_owned() })
+        };
+        if self.carve && self.sheet.is_none() {
+            return refuse("--carve", "there is no plate to carve", "give its size, as --sheet 300x200mm");
+        }
+        let other = outputs.iter().find(|output| !self.makes(output.format()));
+        if let Some(other) = other.filter(|_| self.carve) {
+            let found = format!("{} would have the pattern, and not the sign", other.target());
+            return refuse("--carve", &found, "write a .dxf, a .png, or an .svg with --cut");
+        }
+        let given = [
+            ("--kerf", self.kerf_mm.is_some()),
+            ("--sheet", self.sheet.is_some()),
+            ("--curves", self.curves != Curves::default()),
+            ("--dxf-version", self.dxf_version != DxfVersion::default()),
+        ];
+        let none_cut = !outputs.iter().any(|output| self.cuts(output.format()));
+        if let Some((option, _)) =
+            given.into_iter().find(|(_, is_given)| *is_given && none_cut && !self.carve)
+        {
+            let wanted = "write a .dxf, or an .svg with --cut, or leave it out";
+            return refuse(option, "no output has cut lines", wanted);
+        }
+        if self.dxf_version == DxfVersion::R12 && self.curves == Curves::Spline {
+            return refuse(
+                "--dxf-version",
+                "DXF of release 12 has no splines",
+                "use --curves arcs or polyline",
+            );
+        }
+        Ok(())
+    }
+}
+
+/// What was cut, in numbers. Lengths are millimetres.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct LaserReport {
+    /// The width that the beam burns away, if one was given.
+    pub kerf_mm: Option<f64>,
+    /// Width and height of the plate, if there is one.
+    pub sheet_mm: Option<[f64; 2]>,
+    /// Components of what is kept: the part, or the plate that it was carved out of.
+    pub components: usize,
+    /// Holes of what is kept.
+    pub holes: usize,
+    /// When the part was carved out of a plate: the pieces of the plate that fall out.
+    pub falls_out: Option<Vec<FallenPiece>>,
+    /// What cutting takes.
+    #[serde(flatten)]
+    pub numbers: CutNumbers,
+    /// The files of cut lines.
+    pub files: Vec<LaserFile>,
+}
+
+/// A file of cut lines.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct LaserFile {
+    /// Its name.
+    pub file: String,
+    /// Its size.
+    pub bytes: usize,
+}
+
+/// A part as cut lines, on its way to files.
+pub(super) struct Cutting {
+    options: LaserOptions,
+    lines: CutLines,
+    page_mm: DVec2,
+    chord_mm: f64,
+    description: String,
+    /// What is kept, and what of it falls out.
+    kept: Region,
+    fallen: Option<Region>,
+    pub(super) report: LaserReport,
+}
+
+impl Cutting {
+    /// The cut lines of a part on its page, or of the plate that it is carved out of. `chords_mm` are the chord error
+    /// asked for and what of it is left for curves.
+    pub(super) fn new(
+        options: &LaserOptions,
+        part: &Region,
+        page_mm: DVec2,
+        chords_mm: [f64; 2],
+        description: String,
+    ) -> Result<Self, JobError> {
+        let [chord_mm, curve_chord_mm] = chords_mm;
+        let edge_mm = EDGE_MM.max(EDGE_KERFS * options.kerf_mm.unwrap_or(0.0));
+        let (kept, fallen, falls_out) = match options.sheet {
+            Some(sheet) if options.carve => {
+                let carved = fabricate::carved(part, sheet, edge_mm)?;
+                (carved.plate, Some(carved.fallen), Some(carved.falls_out))
+            }
+            Some(sheet) => (fabricate::on_sheet(part, sheet, edge_mm)?, None, None),
+            None => (part.clone(), None, None),
+        };
+        let cut = match options.kerf_mm {
+            Some(kerf_mm) => fabricate::compensated(&kept, kerf_mm, curve_chord_mm)?,
+            None => kept.clone(),
+        };
+        let page_mm = options.sheet.map_or(page_mm, |sheet| DVec2::new(sheet.width_mm, sheet.height_mm));
+        let plate = match options.sheet.filter(|_| !options.carve) {
+            Some(sheet) => Some(fabricate::plate(cut.grid(), sheet).map_err(JobError::Sheet)?),
+            None => None,
+        };
+        // The page grows where cuts pass its border, by whole steps, so that the lines stay what they are.
+        let (low, high) = cut.bounds_mm().unwrap_or_default();
+        let margin = |mm: f64| if mm < 0.0 { cut.grid().steps(curve_chord_mm - mm) } else { 0 };
+        let by = GridPoint::new(margin(low.x), margin(low.y));
+        let corner = cut.grid().to_mm(by);
+        let page_mm = page_mm.max(high + curve_chord_mm) + corner;
+        let [cut, plate] = [Some(cut), plate].map(|region| region.map(|region| region.shifted(by)));
+        let cut_layer = cut.iter().map(|region| (Layer::Cut, region));
+        let layers: Vec<_> = cut_layer.chain(plate.iter().map(|region| (Layer::Sheet, region))).collect();
+        let lines = CutLines::new(&layers, options.curves, curve_chord_mm)?;
+        let Counts { components, holes } = Counts::of(&kept);
+        let report = LaserReport {
+            kerf_mm: options.kerf_mm,
+            sheet_mm: options.sheet.map(|sheet| [sheet.width_mm, sheet.height_mm]),
+            components,
+            holes,
+            falls_out,
+            numbers: lines.numbers(),
+            files: Vec::new(),
+        };
+        Ok(Self { options: *options, lines, page_mm, chord_mm, description, kept, fallen, report })
+    }
+
+    /// One output, which has passed, and its bytes.
+    pub(super) fn write(
+        &mut self,
+        output: &Output,
+        clock: &mut Clock<'_>,
+    ) -> Result<(Pending, Vec<u8>), JobError> {
+        let bytes = match output.format() {
+            Format::Png => clock.time(Stage::Png, || {
+                let marks = Marks { fallen: self.fallen.as_ref(), ..Marks::default() };
+                export::png(&self.kept, &marks, export::DEFAULT_PIXELS)
+            })?,
+            Format::Svg => clock
+                .time(Stage::CutLines, || {
+                    let options = SvgOptions {
+                        width_mm: self.page_mm.x,
+                        height_mm: self.page_mm.y,
+                        chord_mm: self.chord_mm,
+                        title: None,
+                        description: Some(self.description.clone()),
+                    };
+                    export::cut_svg(&self.lines, &options)
+                })?
+                .into_bytes(),
+            _ => clock
+                .time(Stage::CutLines, || export::dxf(&self.lines, self.options.dxf_version))?
+                .into_bytes(),
+        };
+        let item = Pending::new(output.target(), bytes)?;
+        let bytes = item.read_again()?;
+        if self.options.cuts(output.format()) {
+            clock.time(Stage::Verify, || self.check(output, &bytes))?;
+            let file = name(output.target()).display().to_string();
+            self.report.files.push(LaserFile { file, bytes: bytes.len() });
+        }
+        Ok((item, bytes))
+    }
+
+    /// Holds the bytes of a file against what is kept.
+    fn check(&self, output: &Output, bytes: &[u8]) -> Result<CutReport, JobError> {
+        let file = || name(output.target());
+        let read = if output.format() == Format::Dxf { verify::read_dxf } else { verify::read_cut_svg };
+        let found = read(bytes, self.chord_mm * READ_PART)
+            .map_err(|error| JobError::Unjudged { file: file(), error })?;
+        let expected = Expected {
+            components: Some(self.report.components.into()),
+            holes: Some(self.report.holes.into()),
+            ..Expected::default()
+        };
+        let mismatch = |mismatch| JobError::Mismatch {
+            file: file(),
+            mismatch,
+            remedy: "; try a smaller --chord".to_owned(),
+        };
+        found.check(&expected).map_err(mismatch)?;
+        if let Some(kerf_mm) = self.options.kerf_mm {
+            // What the beam leaves of the file.
+            let region = found.region.offset(-0.5 * kerf_mm, self.chord_mm * READ_PART);
+            let left = CutReport { region, ..found.clone() };
+            left.check(&expected).map_err(mismatch)?;
+        }
+        Ok(found)
+    }
+}

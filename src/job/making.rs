@@ -1,0 +1,139 @@
+//! What a machine and a material ask of a part: enforcing widths, the worst places, and the numbers that cost money.
+
+use glam::DVec2;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::error::JobError;
+use crate::fabricate::{self, Change, Counts, EnforceOptions, Material, MaterialReport};
+use crate::planar::{Region, Tolerances};
+use crate::verify::{self, NarrowPlaces};
+
+/// So many of the worst places are reported, of ink and of gaps.
+const WORST: usize = 10;
+/// So many of the greatest changes are reported.
+const CHANGES: usize = 10;
+
+/// What was thickened and widened. Areas are square millimetres.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct EnforcedReport {
+    /// The ink that was added.
+    pub added_mm2: f64,
+    /// The ink that was taken away.
+    pub removed_mm2: f64,
+    /// The area before.
+    pub area_before_mm2: f64,
+    /// In how many places.
+    pub places: usize,
+    /// The greatest changes.
+    pub greatest: Vec<Change>,
+    /// The narrowest ink and gaps before.
+    pub before: NarrowPlaces,
+}
+
+/// The region with its minimum feature and gap enforced, and what was done; `None` when nothing was lacking.
+///
+/// # Errors
+/// [`JobError::Enforce`] where there is no room.
+pub(super) fn enforced(
+    region: &Region,
+    tolerances: &Tolerances,
+) -> Result<Option<(Region, EnforcedReport)>, JobError> {
+    let options = EnforceOptions {
+        min_feature_mm: tolerances.min_feature_mm(),
+        min_gap_mm: tolerances.min_gap_mm(),
+        chord_mm: tolerances.chord_mm(),
+    };
+    let enforced = fabricate::enforce(region, &options)?;
+    if enforced.region == *region {
+        return Ok(None);
+    }
+    let report = EnforcedReport {
+        added_mm2: enforced.added_mm2,
+        removed_mm2: enforced.removed_mm2,
+        area_before_mm2: region.area_mm2(),
+        places: enforced.changes.len(),
+        greatest: enforced.changes.into_iter().take(CHANGES).collect(),
+        before: worst_places(region, tolerances),
+    };
+    debug_assert_eq!(Counts::of(&enforced.region), Counts::of(region));
+    Ok(Some((enforced.region, report)))
+}
+
+/// That there is nothing to enforce.
+pub(super) fn no_width() -> JobError {
+    JobError::Option {
+        option: "--enforce",
+        found: "there is no width to enforce".to_owned(),
+        wanted: "name a --process, or give --min-feature or --min-gap".to_owned(),
+    }
+}
+
+impl EnforcedReport {
+    /// A line about it.
+    pub(super) fn note(&self) -> String {
+        let percent = 100.0 * (self.added_mm2 - self.removed_mm2) / self.area_before_mm2;
+        format!(
+            "enforced the minimum feature and gap in {} place(s): {:.2} mm2 of ink added, {:.2} mm2 taken away ({percent:+.1} % of the area)",
+            self.places, self.added_mm2, self.removed_mm2
+        )
+    }
+}
+
+/// The worst places of a region, whatever machine will make it.
+pub(super) fn worst_places(region: &Region, tolerances: &Tolerances) -> NarrowPlaces {
+    // As finely as a written file is judged.
+    verify::narrow_places(region, WORST, f64::INFINITY, 0.25 * tolerances.chord_mm())
+}
+
+/// The numbers of a part that cost money. Lengths are millimetres.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct CostReport {
+    /// Ink of the part in square millimetres.
+    pub area_mm2: f64,
+    /// Its volume in cubic millimetres when it is as thick as was asked for.
+    pub volume_mm3: f64,
+    /// Width, height and thickness of the box around it.
+    pub box_mm: [f64; 3],
+    /// The length of all outlines.
+    pub outline_mm: f64,
+    /// The material and the mass, if a material was named.
+    #[serde(flatten)]
+    pub material: Option<MaterialReport>,
+}
+
+impl CostReport {
+    pub(super) fn new(region: &Region, thickness_mm: f64, material: Option<&Material>) -> Self {
+        let (low, high) = region.bounds_mm().unwrap_or((DVec2::ZERO, DVec2::ZERO));
+        let grid = region.grid();
+        let edges = region.contours().flat_map(|contour| contour.edges());
+        let area_mm2 = region.area_mm2();
+        let volume_mm3 = area_mm2 * thickness_mm;
+        Self {
+            area_mm2,
+            volume_mm3,
+            box_mm: [high.x - low.x, high.y - low.y, thickness_mm],
+            outline_mm: edges.map(|(a, b)| grid.to_mm(a).distance(grid.to_mm(b))).sum(),
+            material: material.map(|material| material.report(volume_mm3)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::planar::{self, FillRule, Grid};
+
+    #[test]
+    fn a_plate_costs_what_it_weighs() {
+        // A plate of 20 by 10 mm, as near as the grid has it.
+        let step = Grid::for_extent(100.0).unwrap().steps(1.0);
+        let plate = planar::boxes(step, FillRule::NonZero, &[(0, 0, 20, 10)]);
+        let brass = fabricate::Workshop::default().material("brass").unwrap().clone();
+        let cost = CostReport::new(&plate, 2.0, Some(&brass));
+        assert_eq!((cost.area_mm2, cost.volume_mm3, cost.outline_mm), (200.0, 400.0, 60.0));
+        assert_eq!(cost.box_mm, [20.0, 10.0, 2.0]);
+        assert!((cost.material.unwrap().mass_g - 3.4).abs() < 1e-12);
+        assert_eq!(CostReport::new(&plate, 2.0, None).material, None);
+    }
+}

@@ -1,0 +1,117 @@
+//! What a PNG shows: the part as a drawing with marks, or the solid, shaded.
+
+use std::str::FromStr;
+
+use super::error::JobError;
+use super::output::{Format, Output};
+use crate::export::{self, DEFAULT_COLOUR, DEFAULT_PIXELS, Marks, Painted, View};
+use crate::fabricate::{Bridge, Solid};
+use crate::planar::Region;
+
+/// What is marked in a drawing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Show {
+    /// Struts in orange and slits in green.
+    Bridges,
+    /// Where pieces meet: light blue lines across the band.
+    Seams,
+    /// The narrowest ink and gaps: a red ring around each.
+    Thin,
+}
+
+impl Show {
+    /// All of them, in the order of their names in messages.
+    pub const ALL: [Self; 3] = [Self::Seams, Self::Thin, Self::Bridges];
+
+    /// Its name, as it is typed.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Bridges => "bridges",
+            Self::Seams => "seams",
+            Self::Thin => "thin",
+        }
+    }
+}
+
+impl FromStr for Show {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let known = Self::ALL.into_iter().find(|show| show.name() == text);
+        known.ok_or_else(|| {
+            format!("{text} cannot be shown; use seams, thin or bridges, or several as seams,thin")
+        })
+    }
+}
+
+/// What a PNG shows, and how large it is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PictureOptions {
+    /// Where the solid is seen from; without one the part is shown as a flat drawing.
+    pub view: Option<View>,
+    /// What is marked in a flat drawing.
+    pub show: Vec<Show>,
+    /// The longer side in pixels.
+    pub pixels: u32,
+}
+
+impl Default for PictureOptions {
+    fn default() -> Self {
+        Self { view: None, show: vec![Show::Bridges], pixels: DEFAULT_PIXELS }
+    }
+}
+
+/// A part, and what may be marked in its picture.
+pub(super) struct Pictured<'p> {
+    pub(super) region: &'p Region,
+    pub(super) bridges: &'p [Bridge],
+    pub(super) seams_mm: &'p [Vec<glam::DVec2>],
+    /// The middle and the width of each.
+    pub(super) narrow_mm: &'p [(glam::DVec2, f64)],
+}
+
+impl PictureOptions {
+    /// Refuses what no output or no drawing could show.
+    ///
+    /// # Errors
+    /// [`JobError::Option`] names the option.
+    pub fn check(&self, outputs: &[Output]) -> Result<(), JobError> {
+        let default = Self::default();
+        let has_png = outputs.iter().any(|output| output.format() == Format::Png);
+        let given = [
+            ("--view", self.view.is_some()),
+            ("--show", self.show != default.show),
+            ("--pixels", self.pixels != default.pixels),
+        ];
+        let refuse = |option, found: &str, wanted: &str| {
+            Err(JobError::Option { option, found: found.to_owned(), wanted: wanted.to_owned() })
+        };
+        if let Some((option, _)) = given.into_iter().find(|(_, is_given)| *is_given && !has_png) {
+            return refuse(option, "no output is a picture", "write a .png, or leave it out");
+        }
+        if self.view.is_some() && self.show != default.show {
+            return refuse("--show", "marks are for flat drawings", "leave out --view, or --show");
+        }
+        Ok(())
+    }
+
+    /// The shaded picture of a solid, if that is what is asked for, else of the flat part.
+    pub(super) fn png<'s>(
+        &self,
+        part: &Pictured<'_>,
+        solid: impl FnOnce() -> Result<&'s Solid, JobError>,
+    ) -> Result<Vec<u8>, JobError> {
+        if let Some(view) = self.view {
+            let painted = Painted { solid: solid()?, colour: DEFAULT_COLOUR };
+            return Ok(export::view_png(&[painted], view, self.pixels)?);
+        }
+        let shows = |what: Show| self.show.contains(&what);
+        let marks = Marks {
+            bridges: if shows(Show::Bridges) { part.bridges } else { &[] },
+            fallen: None,
+            seams_mm: if shows(Show::Seams) { part.seams_mm } else { &[] },
+            narrow_mm: if shows(Show::Thin) { part.narrow_mm } else { &[] },
+        };
+        Ok(export::png(part.region, &marks, self.pixels)?)
+    }
+}

@@ -1,0 +1,154 @@
+//! Files for a laser: they are read again, hold what was asked for, and are refused before they exist where the beam
+//! would spoil the part.
+
+#[allow(dead_code, reason = "each test crate uses a part of it")]
+mod common;
+
+use common::Room;
+use serde_json::Value;
+
+const BAND: &str = "band vine.svg --along line:120mm --width 16mm --components 1";
+
+fn number(value: &Value, name: &str) -> f64 {
+    value[name].as_f64().unwrap_or_else(|| panic!("{name} in {value}"))
+}
+
+#[test]
+fn every_kind_of_cut_file_has_the_counts_of_the_report() {
+    let room = Room::with(&["vine.svg"]);
+    for curves in ["arcs", "polyline", "spline"] {
+        let said = room.succeeds(&format!(
+            "{BAND} --kerf 0.1mm --curves {curves} --cut -o {curves}.dxf -o {curves}.svg --report {curves}.json"
+        ));
+        assert!(said.stderr.contains("pierces"), "{}", said.stderr);
+        let report = room.json(&format!("{curves}.json"));
+        let laser = &report["laser"];
+        let (components, holes) = (&report["components"], &report["holes"]);
+        assert_eq!((&laser["components"], &laser["holes"]), (components, holes));
+        let pierces = components.as_u64().unwrap() + holes.as_u64().unwrap();
+        assert_eq!(laser["pierces"].as_u64(), Some(pierces));
+        assert_eq!(
+            laser["files"][0]["bytes"].as_u64(),
+            Some(room.read(&format!("{curves}.dxf")).len() as u64)
+        );
+        for file in [format!("{curves}.dxf"), format!("{curves}.svg")] {
+            let args = format!("verify {file} --components {components} --holes {holes}");
+            let found: Value =
+                serde_json::from_slice(&room.succeeds(&format!("{args} --json")).stdout).unwrap();
+            assert_eq!(found["faults"].as_array().unwrap().len(), 0, "{file}");
+            assert!(
+                (number(&found, "cut_length_mm") / number(laser, "cut_length_mm") - 1.0).abs() < 1e-3,
+                "{file}"
+            );
+            room.succeeds(&format!("verify --certificate {curves}.json {file}"));
+            assert_eq!(room.run(&format!("verify {file} --components 2")).code, 4);
+        }
+    }
+    room.succeeds(&format!("{BAND} --kerf 0.1mm --dxf-version r12 -o old.dxf"));
+    let found = room.succeeds("verify old.dxf --components 1");
+    assert!(String::from_utf8_lossy(&found.stdout).contains("does not say its unit"));
+}
+
+#[test]
+fn the_same_command_gives_the_same_bytes() {
+    let room = Room::with(&["vine.svg"]);
+    for name in ["a", "b"] {
+        room.succeeds(&format!("{BAND} --kerf 0.1mm --cut -o {name}.dxf -o {name}.svg"));
+    }
+    assert_eq!(room.read("a.dxf"), room.read("b.dxf"));
+    assert_eq!(room.read("a.svg"), room.read("b.svg"));
+}
+
+/// A frame with a plate in it: one hole.
+const FRAME: &str = "<path fill-rule='evenodd' d='M5 5H45V25H5Z M10 10H40V20H10Z'/>";
+
+#[test]
+fn kerf_moves_contours_by_half_and_the_part_keeps_its_size() {
+    let room = Room::with(&[]);
+    room.draw("frame.svg", FRAME);
+    room.succeeds("extrude frame.svg --kerf 0.2mm -o frame.dxf");
+    let found: Value = serde_json::from_slice(&room.succeeds("verify frame.dxf --json").stdout).unwrap();
+    let corners: Vec<f64> = found["bounds_mm"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .flat_map(|p| p.as_array().unwrap())
+        .map(|v| v.as_f64().unwrap())
+        .collect();
+    assert!((corners[2] - corners[0] - 40.2).abs() < 1e-3 && (corners[3] - corners[1] - 20.2).abs() < 1e-3);
+    assert!((number(&found, "area_mm2") - (40.2 * 20.2 - 29.8 * 9.8)).abs() < 0.1);
+}
+
+#[test]
+fn a_sign_says_what_falls_out() {
+    let room = Room::with(&[]);
+    room.draw("frame.svg", FRAME);
+    let said = room.succeeds("extrude frame.svg --sheet 60x40mm --carve -o sign.dxf -o sign.png --json");
+    assert!(
+        said.stderr.contains("1 piece(s) fall out of the plate, the largest of 300.0 mm2"),
+        "{}",
+        said.stderr
+    );
+    let report: Value = serde_json::from_slice(&said.stdout).unwrap();
+    let piece = &report["laser"]["falls_out"][0];
+    let at = [0, 1].map(|i| piece["position_mm"][i].as_f64().unwrap());
+    assert!((at[0] - 30.0).abs() < 1e-6 && (at[1] - 20.0).abs() < 1e-6, "{at:?}");
+    room.succeeds("verify sign.dxf --components 2 --holes 1");
+    let said = room.succeeds("extrude frame.svg --bridge 1mm --holes 0 --sheet 60x40mm --carve -o whole.dxf");
+    assert!(said.stderr.contains("nothing falls out of the plate"), "{}", said.stderr);
+    room.succeeds("verify whole.dxf --components 1 --holes 1");
+    // Laid on a plate instead, the part counts, and the outline of the plate does not.
+    room.succeeds("extrude frame.svg --sheet 60x40mm -o laid.dxf");
+    room.succeeds("verify laid.dxf --components 1 --holes 1");
+}
+
+#[test]
+fn what_the_beam_would_spoil_is_refused() {
+    let room = Room::with(&[]);
+    room.draw("frame.svg", FRAME);
+    let refuses = |options: &str, code: i32, words: &[&str]| {
+        room.refuses(&format!("extrude frame.svg {options}"), code, words);
+    };
+    refuses(
+        "--kerf 6mm -o out.dxf",
+        3,
+        &["--kerf", "a feature of 5.0", "narrower than the kerf of 6 mm", "mm a"],
+    );
+    refuses("--kerf 0mm -o out.dxf", 2, &["--kerf", "the kerf is 0 mm", "from 0.001"]);
+    refuses("--kerf -1mm -o out.dxf", 2, &["--kerf"]);
+    refuses("--kerf 0.1mm -o out.stl", 2, &["--kerf", "no output has cut lines", ".dxf"]);
+    refuses("--carve -o out.dxf", 2, &["--carve", "--sheet 300x200mm"]);
+    refuses("--sheet 60x40mm --carve -o out.stl", 2, &["--carve", "out.stl", ".dxf"]);
+    refuses("--sheet 41x40mm -o out.dxf", 2, &["--sheet", "40.00 x 20.00 mm", "at least 42.0 x 22.0 mm"]);
+    refuses(
+        "--curves spline --dxf-version r12 -o out.dxf",
+        2,
+        &["--dxf-version", "splines", "--curves arcs"],
+    );
+    room.draw("near.svg", "<path d='M5 5H25V25H5Z M25.1 5H45V25H25.1Z'/>");
+    room.refuses("extrude near.svg --kerf 0.15mm -o out.dxf", 3, &["a gap of 0.100 mm", "at (25.05"]);
+}
+
+#[test]
+fn double_cuts_and_open_paths_of_others_are_found() {
+    let room = Room::with(&[]);
+    let line = |a: (i32, i32), b: (i32, i32)| {
+        format!("0\nLINE\n8\n0\n10\n{}\n20\n{}\n11\n{}\n21\n{}\n", a.0, a.1, b.0, b.1)
+    };
+    let sides = [line((0, 0), (9, 0)), line((9, 0), (9, 9)), line((9, 9), (0, 9)), line((0, 9), (0, 0))];
+    let file = |entities: &str| {
+        format!(
+            "0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n4\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n{entities}0\nENDSEC\n0\nEOF\n"
+        )
+    };
+    room.write("closed.dxf", &file(&sides.concat()));
+    room.succeeds("verify closed.dxf --components 1 --holes 0");
+    room.write("open.dxf", &file(&sides[..3].concat()));
+    room.write("twice.dxf", &file(&(sides.concat() + &line((1, 0), (5, 0)))));
+    for (name, word) in [("open.dxf", "a path is not closed"), ("twice.dxf", "4.000 mm are cut twice")] {
+        let finished = room.run(&format!("verify {name}"));
+        assert_eq!(finished.code, 4, "{}", finished.stderr);
+        assert!(finished.stderr.contains("fault(s)"), "{}", finished.stderr);
+        assert!(String::from_utf8_lossy(&finished.stdout).contains(word), "{name}");
+    }
+}
