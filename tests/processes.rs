@@ -23,9 +23,9 @@ fn options_win_over_the_file_and_the_file_over_what_is_built_in() {
     assert_eq!(thickness(resin), 5.0);
     assert_eq!(thickness(&format!("{resin} --thickness 1mm --material walnut")), 1.0);
     let report = room.json("out.json");
-    let cost = &report["cost"];
-    let mass = cost["volume_mm3"].as_f64().unwrap() * 0.64 / 1000.0;
-    assert!((cost["mass_g"].as_f64().unwrap() - mass).abs() < 1e-9, "{cost}");
+    let quantities = &report["quantities"];
+    let mass = quantities["volume_mm3"].as_f64().unwrap() * 0.64 / 1000.0;
+    assert!((quantities["mass_g"].as_f64().unwrap() - mass).abs() < 1e-9, "{quantities}");
     assert_eq!(report["bytes"][0].as_u64().unwrap(), room.read("out.svg").len() as u64);
 }
 

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use super::args::ExtrudeArguments;
 use super::laser::say_cuts;
 use super::progress::Progress;
-use super::run::{CliError, output, print_json, refuse_json_beside, say_bridges, say_cost, say_notes};
+use super::run::{CliError, output, print_json, refuse_json_beside, say_bridges, say_notes, say_quantities};
 use crate::job::{ExtrudeBridges, ExtrudeMaking, ExtrudeReport, Format, Output, extrude};
 use crate::planar::Tolerances;
 
@@ -52,7 +52,7 @@ fn say_made(made: &ExtrudeReport) {
         None => say!("{} component(s), {} hole(s)", made.components, made.holes),
     }
     say_bridges(made.bridges.as_ref(), "--json lists their positions, and a .png shows them in colour");
-    say_cost(Some(&made.cost));
+    say_quantities(Some(&made.quantities));
     say_cuts(made.laser.as_ref());
     say_notes(&made.notes);
     for file in &made.files {

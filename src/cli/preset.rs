@@ -47,6 +47,13 @@ fn did_you_mean(suggestion: Option<&str>) -> String {
 
 /// The arguments with those of their presets put in.
 pub(super) fn expanded(arguments: Vec<OsString>) -> Result<Vec<OsString>, PresetError> {
+    expanded_with(arguments, |file| std::fs::read_to_string(file))
+}
+
+fn expanded_with(
+    arguments: Vec<OsString>,
+    read: impl Fn(&Path) -> std::io::Result<String>,
+) -> Result<Vec<OsString>, PresetError> {
     let program = Arguments::command();
     // What is wrong or missing is found when all options are together.
     let Ok(typed) = program.clone().ignore_errors(true).try_get_matches_from(&arguments) else {
@@ -61,8 +68,7 @@ pub(super) fn expanded(arguments: Vec<OsString>) -> Result<Vec<OsString>, Preset
     };
     let mut options = BTreeMap::new();
     for file in files {
-        let text = std::fs::read_to_string(file)
-            .map_err(|error| PresetError::Unreadable { file: file.clone(), error })?;
+        let text = read(file).map_err(|error| PresetError::Unreadable { file: file.clone(), error })?;
         Preset { file, text: &text, program: &program, command }.read(&mut options)?;
     }
     let words =
@@ -92,7 +98,10 @@ impl PresetOption<'_> {
     fn is_overruled(&self, command: &Command, typed: &ArgMatches) -> bool {
         let was_typed =
             |arg: &Arg| typed.value_source(arg.get_id().as_str()) == Some(ValueSource::CommandLine);
-        was_typed(self.arg) || command.get_arg_conflicts_with(self.arg).into_iter().any(was_typed)
+        // Of two options that exclude each other, either may be the one that says so.
+        let excludes = |one: &Arg, other: &Arg| command.get_arg_conflicts_with(one).contains(&other);
+        let is_excluded = |arg: &Arg| was_typed(arg) && (excludes(arg, self.arg) || excludes(self.arg, arg));
+        was_typed(self.arg) || command.get_arguments().any(is_excluded)
     }
 }
 
@@ -192,11 +201,8 @@ mod tests {
 
     /// What becomes of `line` with a preset of `text`.
     fn with(text: &str, line: &str) -> Result<Vec<String>, PresetError> {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("p.toml");
-        std::fs::write(&file, text).unwrap();
-        let line = line.replace("PRESET", &format!("--preset={}", file.display()));
-        let words = expanded(line.split(' ').map(OsString::from).collect())?;
+        let line = line.replace("PRESET", "--preset=p.toml");
+        let words = expanded_with(line.split(' ').map(OsString::from).collect(), |_| Ok(text.to_owned()))?;
         Ok(words
             .into_iter()
             .map(|word| word.into_string().unwrap())
@@ -228,10 +234,7 @@ mod tests {
 
     #[test]
     fn what_is_wrong_is_told_with_its_line() {
-        let message = |text: &str| {
-            let error = with(text, "openwork band PRESET vine.svg").unwrap_err().to_string();
-            error[error.find("p.toml").unwrap()..].to_owned()
-        };
+        let message = |text: &str| with(text, "openwork band PRESET vine.svg").unwrap_err().to_string();
         assert_eq!(
             message("seed = 1\ncompnents = 1\n"),
             "p.toml, line 2: band has no option compnents; did you mean components?"

@@ -15,8 +15,8 @@ use crate::analysis::{Analysis, AnalysisError};
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
 use crate::export;
 use crate::job::{
-    BandBuilder, BandReport, BridgesReport, Choice, CostReport, DEFAULT_TEMPERATURE, Format, JobError,
-    MadeReport, Output, READ_SHARE, SlicingChoice, Target, write_numbered,
+    BandBuilder, BandReport, BridgesReport, Choice, DEFAULT_TEMPERATURE, Format, JobError, MadeReport,
+    Output, Quantities, READ_SHARE, SlicingChoice, Target, write_numbered,
 };
 use crate::pieces::CostWeights;
 use crate::planar::{Tolerances, TolerancesError};
@@ -273,7 +273,7 @@ pub(super) fn say_found(made: &MadeReport) {
         let p = narrowest.position_mm;
         say!("narrowest {what} {:.3} mm, at ({:.1}, {:.1}) mm", narrowest.width_mm, p.x, p.y);
     }
-    say_cost(made.cost.as_ref());
+    say_quantities(made.quantities.as_ref());
     say_cuts(made.laser.as_ref());
     say_notes(&made.notes);
     for file in &made.files {
@@ -282,9 +282,9 @@ pub(super) fn say_found(made: &MadeReport) {
 }
 
 /// What the part takes of its material, if one was named.
-pub(super) fn say_cost(cost: Option<&CostReport>) {
-    if let Some((cost, material)) = cost.and_then(|cost| Some((cost, cost.material.as_ref()?))) {
-        say!("{:.1} mm3 of {}: {:.2} g", cost.volume_mm3, material.material.name, material.mass_g);
+pub(super) fn say_quantities(quantities: Option<&Quantities>) {
+    if let Some((part, material)) = quantities.and_then(|part| Some((part, part.material.as_ref()?))) {
+        say!("{:.1} mm3 of {}: {:.2} g", part.volume_mm3, material.material.name, material.mass_g);
     }
 }
 

@@ -103,7 +103,7 @@ mod tests {
         let band = &schema["options"]["band"];
         assert_eq!(band["properties"]["closed-pattern"]["type"], "boolean");
         assert_eq!(band["properties"]["output"]["type"], "array");
-        assert_eq!(band["properties"]["chord"]["default"], "0.01mm");
+        assert_eq!(band["properties"]["slicing"]["default"], "reeb");
         assert_eq!(band["additionalProperties"], false);
         let required: Vec<&str> =
             band["required"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();

@@ -13,7 +13,7 @@ use super::describe::describe;
 use super::error::JobError;
 use super::extrude::{file_name, name};
 use super::laser::Cutting;
-use super::making::{self, CostReport};
+use super::making::{self, Quantities};
 use super::output::{Format, Output, Pending, Target, persist};
 use super::part::{Part, PartError};
 use super::picture::Pictured;
@@ -381,8 +381,8 @@ impl Band {
         report.made.min_feature = found.min_feature;
         report.made.min_gap = found.min_gap;
         let options = &self.job.options;
-        report.made.cost =
-            Some(CostReport::new(&self.part.region, options.thickness_mm, options.material.as_ref()));
+        report.made.quantities =
+            Some(Quantities::new(&self.part.region, options.thickness_mm, options.material.as_ref()));
         report.made.files = outputs.iter().map(|o| name(o.target()).display().to_string()).collect();
         report.made.times.extend(clock.times);
         Ok((report, pending))

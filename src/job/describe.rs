@@ -109,7 +109,7 @@ pub(super) fn describe(
             min_gap: None,
             narrow_places: Default::default(),
             enforced: None,
-            cost: None,
+            quantities: None,
             bytes: Vec::new(),
             area_mm2: part.region.area_mm2(),
             page_mm: part.page_mm.to_array(),

@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::bridging::{self, BridgesReport};
 use super::error::JobError;
 use super::laser::{Cutting, LaserOptions, LaserReport};
-use super::making::{self, CostReport, EnforcedReport};
+use super::making::{self, EnforcedReport, Quantities};
 use super::output::{Format, Output, Pending, Target, persist};
 use super::picture::{PictureOptions, Pictured};
 use super::print::{self, PrintOptions, check_mesh};
@@ -45,7 +45,7 @@ pub struct ExtrudeReport {
     /// The ten narrowest places of ink and of gaps.
     pub narrow_places: NarrowPlaces,
     /// What costs money.
-    pub cost: CostReport,
+    pub quantities: Quantities,
     /// Bytes of the files, in their order.
     pub bytes: Vec<usize>,
     /// What was found in the solid, if one was written.
@@ -217,7 +217,7 @@ pub fn extrude(
         bridges,
         enforced,
         narrow_places,
-        cost: CostReport::new(&region, thickness_mm, material.as_ref()),
+        quantities: Quantities::new(&region, thickness_mm, material.as_ref()),
         bytes: sizes,
         solid,
         drawing: drawn,

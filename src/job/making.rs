@@ -88,7 +88,7 @@ pub(super) fn worst_places(region: &Region, tolerances: &Tolerances) -> NarrowPl
 
 /// The numbers of a part that cost money. Lengths are millimetres.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct CostReport {
+pub struct Quantities {
     /// Ink of the part in square millimetres.
     pub area_mm2: f64,
     /// Its volume in cubic millimetres when it is as thick as was asked for.
@@ -102,7 +102,7 @@ pub struct CostReport {
     pub material: Option<MaterialReport>,
 }
 
-impl CostReport {
+impl Quantities {
     pub(super) fn new(region: &Region, thickness_mm: f64, material: Option<&Material>) -> Self {
         let (low, high) = region.bounds_mm().unwrap_or((DVec2::ZERO, DVec2::ZERO));
         let grid = region.grid();
@@ -130,10 +130,10 @@ mod tests {
         let step = Grid::for_extent(100.0).unwrap().steps(1.0);
         let plate = planar::boxes(step, FillRule::NonZero, &[(0, 0, 20, 10)]);
         let brass = fabricate::Workshop::default().material("brass").unwrap().clone();
-        let cost = CostReport::new(&plate, 2.0, Some(&brass));
+        let cost = Quantities::new(&plate, 2.0, Some(&brass));
         assert_eq!((cost.area_mm2, cost.volume_mm3, cost.outline_mm), (200.0, 400.0, 60.0));
         assert_eq!(cost.box_mm, [20.0, 10.0, 2.0]);
         assert!((cost.material.unwrap().mass_g - 3.4).abs() < 1e-12);
-        assert_eq!(CostReport::new(&plate, 2.0, None).material, None);
+        assert_eq!(Quantities::new(&plate, 2.0, None).material, None);
     }
 }

@@ -68,7 +68,7 @@ pub use cut::READ_SHARE;
 pub use error::{JobError, OutlineFault};
 pub use extrude::{ExtrudeBridges, ExtrudeMaking, ExtrudeReport, extrude};
 pub use laser::{LaserFile, LaserOptions, LaserReport};
-pub use making::{CostReport, EnforcedReport};
+pub use making::{EnforcedReport, Quantities};
 pub use output::{Format, Output, Target};
 pub use picture::{PictureOptions, Show};
 pub use plan::{DEFAULT_MEMORY_LIMIT, Plan, PlanError, PlanOptions, plan};

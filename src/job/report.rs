@@ -7,7 +7,7 @@ use super::bridging::BridgesReport;
 use super::certificate::Certificate;
 use super::json;
 use super::laser::LaserReport;
-use super::making::{CostReport, EnforcedReport};
+use super::making::{EnforcedReport, Quantities};
 use super::ways::WayReport;
 use crate::domain::Squeeze;
 use crate::solver::Tally;
@@ -196,7 +196,7 @@ pub struct MadeReport {
     /// What was thickened and widened; null when it was not asked for, or nothing was lacking.
     pub enforced: Option<EnforcedReport>,
     /// What costs money.
-    pub cost: Option<CostReport>,
+    pub quantities: Option<Quantities>,
     /// Bytes of the files, in their order.
     pub bytes: Vec<usize>,
     /// Ink of the part in square millimetres.
