@@ -28,3 +28,25 @@ cargo run --release --locked --quiet --example contact_sheet -- $pictures/wall.p
 cargo run --release --locked --quiet --example stitching -- --pictures $pictures/stitching.png > /dev/null
 "$openwork" analyze $exemplars/vine.svg -o $pictures/analysis.png --quiet
 cargo run --release --locked --quiet --example persistences -- $exemplars/vine.svg $pictures/persistences.png
+
+# What makers see.
+scripts/sign.sh
+thin="$exemplars/strokes.svg --along line:40mm --width 6mm --show thin --pixels 1200"
+# shellcheck disable=SC2086
+{
+  band $thin -o $pictures/thin.png
+  band $thin --min-feature 0.6mm --min-gap 0.3mm --enforce -o $pictures/enforced.png
+}
+band $exemplars/vine.svg --along circle:65mm --width 14mm --components 1 --closed-pattern --chamfer 0.3mm --view iso \
+  --pixels 1200 -o $pictures/solid.png
+band $exemplars/lace.svg --along line:60mm --width 14mm --components 1 --show seams,thin -o $pictures/seams.png
+# Where the beam goes: its path in red, as wide as the kerf, over the part.
+kerf=0.8mm
+band $exemplars/meander.svg --along line:40mm --width 14mm -o "$row/part.svg"
+"$openwork" extrude "$row/part.svg" --cut --kerf $kerf -o "$row/cut.svg" --quiet
+{
+  sed '/<\/svg>/d; s/fill="#000"/fill="#22304e"/' "$row/part.svg"
+  sed -n '/<g /,/<\/g>/p' "$row/cut.svg" | sed -E "s/stroke-width=\"[^\"]*\"/stroke-width=\"${kerf%mm}\" stroke-opacity=\"0.6\"/"
+  echo '</svg>'
+} > "$row/kerf.svg"
+cargo run --release --locked --quiet --example contact_sheet -- $pictures/kerf.png 1 "$row/kerf.svg"

@@ -20,8 +20,9 @@ use crate::verify::{self, CutReport, Expected};
 /// left of its edge breaks or burns away.
 const EDGE_MM: f64 = 1.0;
 const EDGE_KERFS: f64 = 3.0;
-/// How finely files are read again, as a part of the chord error.
-const READ_PART: f64 = 0.125;
+/// How finely files are read again, as a part of the chord error: as finely as contours were held apart. Coarser, and the
+/// chords of two that pass each other closely may cross.
+const READ_PART: f64 = 0.03;
 
 /// What files of cut lines are to be like. Lengths are millimetres.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
