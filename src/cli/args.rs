@@ -155,6 +155,10 @@ pub(super) struct BandArguments {
     /// So many different bands drawn at random; files are numbered, as out-01.svg
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(super) count: Option<u16>,
+    /// Leave out the contact sheet that --count and --best write beside the first file: out-sheet.png, a picture of all
+    /// bands with their numbers
+    #[arg(long, alias = "no-sheet")]
+    pub(super) no_contact_sheet: bool,
     /// T, how wild bands drawn at random are: each is drawn with a probability in proportion to exp(-cost/T), and a jump
     /// costs 1. At 0.05 they are nearly the cheapest, at 0.16 there is a jump more in some thirty pieces, at 0.5 they jump
     /// every few pieces, from 2 on they are rubble [default: 0.16]

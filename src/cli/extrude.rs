@@ -18,9 +18,9 @@ pub(super) fn run(arguments: &ExtrudeArguments) -> Result<ExitCode, CliError> {
         thickness_mm: made.thickness_mm,
         tolerances: Tolerances::new(made.chord_mm, made.min_feature_mm, made.min_gap_mm)?,
         enforce: arguments.make.enforce,
+        laser: arguments.laser.options(&made, &arguments.output),
         material: made.material,
         print: arguments.print.options(),
-        laser: arguments.laser.options(made.kerf_mm, &arguments.output),
         picture: arguments.picture.options(),
     };
     let bridges = arguments.bridge.map(|width_mm| ExtrudeBridges {

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
+use super::make::Made;
 use super::values;
 use crate::job::{Curves, DxfVersion, LaserOptions, LaserReport, SheetSize};
 
@@ -30,6 +31,10 @@ pub(super) struct LaserArgs {
     /// that falls out of it; with --holes 0 none does
     #[arg(long)]
     pub(super) carve: bool,
+    /// Engrave the outlines of this drawing on the part (SVG), on a layer of its own and before anything is cut. Its page is
+    /// the part's: what is drawn over the part's .svg is in its place. Refused where there is no material
+    #[arg(long, value_name = "FILE.svg")]
+    pub(super) engrave: Option<PathBuf>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -46,13 +51,13 @@ pub(super) enum Release {
 }
 
 impl LaserArgs {
-    /// The options; the kerf is that of a process where none was typed and something is cut.
-    pub(super) fn options(&self, of_process_mm: Option<f64>, outputs: &[PathBuf]) -> LaserOptions {
+    /// The options; the kerf is that of the process where none was typed and something is cut.
+    pub(super) fn options(&self, made: &Made, outputs: &[PathBuf]) -> LaserOptions {
         let is_dxf = |path: &PathBuf| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("dxf"));
         let cuts = self.cut || outputs.iter().any(is_dxf);
         LaserOptions {
             cut: self.cut,
-            kerf_mm: self.kerf.or(of_process_mm.filter(|_| cuts)),
+            kerf_mm: self.kerf.or(made.kerf_mm.filter(|_| cuts)),
             curves: match self.curves {
                 CurveKind::Arcs => Curves::Arcs,
                 CurveKind::Polyline => Curves::Polyline,
@@ -64,6 +69,8 @@ impl LaserArgs {
             },
             sheet: self.sheet,
             carve: self.carve,
+            engrave: self.engrave.clone(),
+            colours: made.colours,
         }
     }
 }
@@ -90,5 +97,8 @@ pub(super) fn say_cuts(laser: Option<&LaserReport>) {
         return;
     }
     let numbers = &laser.numbers;
+    if laser.engraved.is_some() {
+        say!("engraves {:.1} mm", numbers.engrave_length_mm);
+    }
     say!("cuts {:.1} mm, {} pierces, {} nodes", numbers.cut_length_mm, numbers.pierces, numbers.nodes);
 }

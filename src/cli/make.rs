@@ -9,7 +9,7 @@ use clap::Args;
 use super::args::ToleranceArguments;
 use super::run::CliError;
 use super::values;
-use crate::job::{JobError, Material, Process, Workshop};
+use crate::job::{JobError, LayerColours, Material, Process, Workshop};
 use crate::planar::Tolerances;
 
 /// The thickness of a solid when neither an option nor a process says one, in millimetres.
@@ -18,7 +18,8 @@ const THICKNESS_MM: f64 = 2.0;
 #[derive(Debug, Clone, Args)]
 pub(super) struct MakeArgs {
     /// The machine: fdm-0.4, fdm-0.2, resin, laser-ply-3mm, laser-acrylic-3mm, waterjet, or one of --processes. Says
-    /// --min-feature, --min-gap, --chord, --thickness and, for cut lines, --kerf where these are not given
+    /// --min-feature, --min-gap, --chord, --thickness and, for cut lines, --kerf where these are not given, and
+    /// the colours of lines that are cut and engraved
     #[arg(long, value_name = "NAME")]
     process: Option<String>,
     /// More processes and materials, or other numbers for those that are built in (TOML)
@@ -45,6 +46,8 @@ pub(super) struct Made {
     pub(super) thickness_mm: f64,
     /// Of the process, if it cuts.
     pub(super) kerf_mm: Option<f64>,
+    /// Of the process, or the usual ones.
+    pub(super) colours: LayerColours,
     pub(super) material: Option<Material>,
 }
 
@@ -69,6 +72,10 @@ impl MakeArgs {
             chord_mm: or(tolerances.chord, |p| p.chord_mm, Tolerances::DEFAULT_CHORD_MM),
             thickness_mm: or(self.thickness, |p| p.thickness_mm, THICKNESS_MM),
             kerf_mm: process.map(|p| p.kerf_mm).filter(|&kerf_mm| kerf_mm > 0.0),
+            colours: process.map_or_else(LayerColours::default, |p| LayerColours {
+                cut: p.cut_colour,
+                engrave: p.engrave_colour,
+            }),
             material: material.cloned(),
         })
     }

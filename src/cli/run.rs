@@ -124,6 +124,9 @@ fn run_band(arguments: &BandArguments) -> Result<ExitCode, CliError> {
     drop(progress);
     if !quiet {
         reports.iter().for_each(say_band);
+        if let Some(sheet) = reports.first().and_then(|report| report.contact_sheet.as_ref()) {
+            say!("wrote {sheet}");
+        }
         if let Some(wanted) = wanted.filter(|&wanted| reports.len() < usize::from(wanted)) {
             say!("note: {} different band(s) were found of the {wanted} that were asked for", reports.len());
         }
@@ -193,6 +196,7 @@ fn builder(arguments: &BandArguments) -> Result<BandBuilder, CliError> {
     let builder = BandBuilder::new(&arguments.exemplar, arguments.along.clone())
         .closed_pattern(arguments.closed_pattern)
         .choice(choice(arguments)?)
+        .contact_sheet(!arguments.no_contact_sheet)
         .counted(arguments.pattern.report.is_some());
     let builder = match arguments.round {
         Some(radius) => builder.round_mm(radius),
@@ -217,7 +221,7 @@ pub(super) fn with_pattern(builder: BandBuilder, a: &PatternArguments) -> Result
         .min_feature_mm(made.min_feature_mm)
         .min_gap_mm(made.min_gap_mm)
         .enforce(a.make.enforce)
-        .laser(a.laser.options(made.kerf_mm, &a.output))
+        .laser(a.laser.options(&made, &a.output))
         .picture(a.picture.options())
         .print(a.print.options());
     if let Some(material) = made.material {

@@ -7,7 +7,8 @@
 use std::fmt::Write;
 
 use super::ExportError;
-use super::cutlines::{CutLines, Layer};
+use super::cutlines::CutLines;
+use super::layer::Layer;
 use super::svg::{SvgOptions, check, open_document, rounded_page, write_outline};
 
 /// The width of the strokes in millimetres. Wider, and some programs take them for areas to engrave; narrower, and
@@ -28,7 +29,7 @@ pub fn cut_svg(lines: &CutLines, options: &SvgOptions) -> Result<String, ExportE
         if paths.peek().is_none() {
             continue;
         }
-        let [r, g, b] = layer.rgb();
+        let [r, g, b] = lines.colours.of(layer);
         let _ = writeln!(
             text,
             "<g id=\"{}\" fill=\"none\" stroke=\"#{r:02x}{g:02x}{b:02x}\" stroke-width=\"{HAIRLINE}\">",
@@ -48,7 +49,7 @@ pub fn cut_svg(lines: &CutLines, options: &SvgOptions) -> Result<String, ExportE
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::export::Curves;
+    use crate::export::{Curves, LayerColours};
     use crate::planar::{FillRule, boxes};
 
     fn options() -> SvgOptions {
@@ -64,6 +65,9 @@ mod tests {
                      <path d=\"M3 36L3 31L8 31L8 36Z\"/>\n<path d=\"M1 38L11 38L11 28L1 28Z\"/>\n</g>\n";
         assert!(text.contains(group), "{text}");
         assert!(text.contains(" viewBox=\"0 0 60 40\" data-cut-lines=\"even-odd\">"));
+        let colours = LayerColours { cut: [0, 0x80, 0xff], ..LayerColours::default() };
+        let text = cut_svg(&lines.clone().with_colours(colours), &options()).unwrap();
+        assert!(text.contains("stroke=\"#0080ff\"") && !text.contains("#ff0000"), "{text}");
         let small = SvgOptions { width_mm: 10.0, ..options() };
         assert!(matches!(cut_svg(&lines, &small), Err(ExportError::OffPage { .. })));
     }

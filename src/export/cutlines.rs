@@ -11,54 +11,11 @@ use serde::Serialize;
 
 use super::ExportError;
 use super::curves::Rounding;
+use super::layer::{Layer, LayerColours};
 use super::order::ordered;
 use super::outline::Outline;
 use super::outlines::{Curves, outlines};
 use crate::planar::Region;
-
-/// What is to be done along a path.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Layer {
-    /// Only the surface is marked.
-    Engrave,
-    /// The beam goes through.
-    Cut,
-    /// Nothing: the outline of the plate, to lay the part out by.
-    Sheet,
-}
-
-impl Layer {
-    /// All, in the order in which they are worked.
-    pub const ALL: [Self; 3] = [Self::Engrave, Self::Cut, Self::Sheet];
-
-    /// Its name in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Engrave => "ENGRAVE",
-            Self::Cut => "CUT",
-            Self::Sheet => "SHEET",
-        }
-    }
-
-    /// Its colour as red, green and blue: those that most laser programs take for cutting (red) and engraving (blue).
-    pub fn rgb(self) -> [u8; 3] {
-        match self {
-            Self::Engrave => [0, 0, 255],
-            Self::Cut => [255, 0, 0],
-            Self::Sheet => [128, 128, 128],
-        }
-    }
-
-    /// The same as a number of the AutoCAD colour index.
-    pub(super) fn colour_index(self) -> u8 {
-        match self {
-            Self::Engrave => 5,
-            Self::Cut => 1,
-            Self::Sheet => 8,
-        }
-    }
-}
 
 /// What cutting takes, in numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, JsonSchema)]
@@ -88,6 +45,7 @@ pub struct CutLines {
     pub(super) bounds_mm: (DVec2, DVec2),
     /// The decimals that suit the chord error.
     pub(super) decimals: i32,
+    pub(super) colours: LayerColours,
     chord_mm: f64,
 }
 
@@ -112,7 +70,13 @@ impl CutLines {
             }
         }
         let decimals = regions.iter().map(|(_, region)| Rounding::on(region.grid()).decimals(chord_mm)).max();
-        Ok(Self { paths, bounds_mm, decimals: decimals.unwrap_or(0), chord_mm })
+        let (decimals, colours) = (decimals.unwrap_or(0), LayerColours::default());
+        Ok(Self { paths, bounds_mm, decimals, colours, chord_mm })
+    }
+
+    /// The same lines in other colours.
+    pub fn with_colours(self, colours: LayerColours) -> Self {
+        Self { colours, ..self }
     }
 
     /// What cutting them takes.

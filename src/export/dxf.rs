@@ -11,7 +11,8 @@ use std::fmt::{Display, Write};
 use glam::DVec2;
 
 use super::ExportError;
-use super::cutlines::{CutLines, CutPath, Layer};
+use super::cutlines::{CutLines, CutPath};
+use super::layer::{DxfColour, Layer};
 use super::outline::{Outline, Segment};
 use super::text::Number;
 
@@ -171,10 +172,10 @@ impl Writer {
             }
         });
         self.table("LAYER", handle::LAYER, 1 + layers.len(), |w| {
-            w.layer("0", 7, true);
-            layers
-                .iter()
-                .for_each(|layer| w.layer(layer.name(), layer.colour_index(), *layer != Layer::Sheet));
+            w.layer("0", DxfColour::new([0, 0, 0]), true);
+            for layer in layers {
+                w.layer(layer.name(), DxfColour::new(lines.colours.of(layer)), layer != Layer::Sheet);
+            }
         });
         self.table("STYLE", handle::STYLE, 1, |w| {
             w.entry("STYLE", None, handle::STYLE, "AcDbTextStyleTableRecord", "Standard");
@@ -202,10 +203,13 @@ impl Writer {
         });
     }
 
-    fn layer(&mut self, name: &str, colour: u8, plots: bool) {
+    fn layer(&mut self, name: &str, colour: DxfColour, plots: bool) {
         self.entry("LAYER", None, handle::LAYER, "AcDbLayerTableRecord", name);
         self.pair(70, 0);
-        self.pair(62, colour);
+        self.pair(62, colour.index);
+        if let Some(exact) = colour.exact.filter(|_| !self.is_r12()) {
+            self.pair(420, exact);
+        }
         self.pair(6, if self.is_r12() { "CONTINUOUS" } else { "Continuous" });
         if !self.is_r12() && !plots {
             self.pair(290, 0);
@@ -326,96 +330,4 @@ fn vertices(outline: &Outline) -> impl Iterator<Item = (DVec2, f64)> + '_ {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::export::Curves;
-    use crate::planar::{FillRule, Grid, Region, boxes};
-
-    /// A disc of radius 5 about (20, 20), flattened finely.
-    fn disc() -> Region {
-        let grid = Grid::for_extent(100.0).unwrap();
-        let at = |i: u32| {
-            let p =
-                DVec2::splat(20.0) + 5.0 * DVec2::from_angle(f64::from(i) * std::f64::consts::TAU / 200.0);
-            grid.snap(p).unwrap()
-        };
-        Region::fill(grid, &[(0..200).map(at).collect()], FillRule::NonZero)
-    }
-
-    fn written(regions: &[(Layer, &Region)], curves: Curves, version: DxfVersion) -> String {
-        dxf(&CutLines::new(regions, curves, 0.01).unwrap(), version).unwrap()
-    }
-
-    /// The values of the pairs with a code.
-    fn values(text: &str, code: &str) -> Vec<String> {
-        let lines: Vec<&str> = text.lines().collect();
-        assert_eq!(lines.len() % 2, 0, "codes and values alternate");
-        lines.chunks(2).filter(|pair| pair[0] == code).map(|pair| pair[1].to_owned()).collect()
-    }
-
-    #[test]
-    fn a_square_with_a_hole_is_two_closed_polylines_inner_first() {
-        let frame = boxes(1 << 26, FillRule::EvenOdd, &[(1, 2, 10, 10), (3, 4, 5, 5)]);
-        let text = written(&[(Layer::Cut, &frame)], Curves::Arcs, DxfVersion::R2000);
-        assert!(text.starts_with("0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1015\n"));
-        assert!(text.contains("9\n$INSUNITS\n70\n4\n9\n$MEASUREMENT\n70\n1\n") && text.ends_with("0\nEOF\n"));
-        let first = "100\nAcDbPolyline\n90\n4\n70\n1\n43\n0\n10\n3\n20\n4\n10\n3\n20\n9\n10\n8\n20\n9\n10\n8\n20\n4\n";
-        assert!(text.contains(first), "{text}");
-        assert_eq!(text.matches("\nLWPOLYLINE\n").count(), 2);
-        assert_eq!(text, written(&[(Layer::Cut, &frame)], Curves::Arcs, DxfVersion::R2000), "the same bytes");
-    }
-
-    #[test]
-    fn handles_are_unique_and_below_the_seed() {
-        let text =
-            written(&[(Layer::Cut, &disc()), (Layer::Engrave, &disc())], Curves::Spline, DxfVersion::R2000);
-        let mut handles = values(&text, "5");
-        handles.extend(values(&text, "105"));
-        let seed = u32::from_str_radix(&handles.remove(0), 16).unwrap();
-        let mut numbers: Vec<u32> = handles.iter().map(|h| u32::from_str_radix(h, 16).unwrap()).collect();
-        numbers.sort_unstable();
-        assert!(numbers.windows(2).all(|w| w[0] < w[1]) && *numbers.last().unwrap() < seed, "{numbers:?}");
-        let owners: Vec<u32> =
-            values(&text, "330").iter().map(|h| u32::from_str_radix(h, 16).unwrap()).collect();
-        assert!(owners.iter().all(|owner| *owner == 0 || numbers.contains(owner)));
-    }
-
-    #[test]
-    fn a_disc_is_arcs_or_a_spline() {
-        let arcs = written(&[(Layer::Cut, &disc())], Curves::Arcs, DxfVersion::R2000);
-        let bulges = values(&arcs, "42");
-        // One value is the width factor of the text style.
-        assert!((4..9).contains(&bulges.len()), "{bulges:?}");
-        let spline = written(&[(Layer::Cut, &disc())], Curves::Spline, DxfVersion::R2000);
-        let knots = values(&spline, "72").last().unwrap().parse::<usize>().unwrap();
-        let points = values(&spline, "73").last().unwrap().parse::<usize>().unwrap();
-        assert_eq!(knots, points + 4);
-        let entity = &spline[spline.find("AcDbSpline").unwrap()..spline.find("OBJECTS").unwrap()];
-        assert_eq!((entity.matches("\n40\n").count(), entity.matches("\n10\n").count()), (knots, points));
-    }
-
-    #[test]
-    fn release_12_has_polylines_and_refuses_splines() {
-        let text = written(&[(Layer::Cut, &disc())], Curves::Arcs, DxfVersion::R12);
-        assert!(text.contains("AC1009") && !text.contains("$INSUNITS") && !text.contains("AcDb"));
-        // All but the last, which begins the closing line, have a bulge; so many values has the text style too.
-        assert_eq!(text.matches("\nVERTEX\n").count(), values(&text, "42").len());
-        assert_eq!((text.matches("\nPOLYLINE\n").count(), text.matches("\nSEQEND\n").count()), (1, 1));
-        let splines = CutLines::new(&[(Layer::Cut, &disc())], Curves::Spline, 0.01).unwrap();
-        assert!(matches!(dxf(&splines, DxfVersion::R12), Err(ExportError::Splines)));
-    }
-
-    #[test]
-    fn layers_have_their_colours_and_engraving_comes_first() {
-        let square = boxes(1 << 26, FillRule::NonZero, &[(0, 0, 50, 50)]);
-        let regions = [(Layer::Sheet, &square), (Layer::Cut, &square), (Layer::Engrave, &square)];
-        let text = written(&regions, Curves::Arcs, DxfVersion::R2000);
-        for (name, colour) in [("ENGRAVE", 5), ("CUT", 1), ("SHEET", 8)] {
-            assert!(text.contains(&format!("2\n{name}\n70\n0\n62\n{colour}\n")), "{name}");
-        }
-        let entities = &text[text.find("ENTITIES").unwrap()..];
-        let layers: Vec<&str> =
-            entities.split("\n8\n").skip(1).map(|rest| rest.lines().next().unwrap()).collect();
-        assert_eq!(layers, ["ENGRAVE", "CUT", "SHEET"]);
-    }
-}
+mod tests;

@@ -9,11 +9,14 @@
 //! same bytes. Excluded: standard output, and how shapes came to be.
 
 mod arcs;
+mod canvas;
 mod clearance;
+mod contact_sheet;
 mod curves;
 mod cut_svg;
 mod cutlines;
 mod dxf;
+mod layer;
 mod mesh;
 mod obj;
 mod order;
@@ -28,9 +31,11 @@ mod text;
 mod threemf;
 mod view;
 
+pub use contact_sheet::{Shown, contact_sheet};
 pub use cut_svg::cut_svg;
-pub use cutlines::{CutLines, CutNumbers, Layer};
+pub use cutlines::{CutLines, CutNumbers};
 pub use dxf::{DxfVersion, dxf};
+pub use layer::{Layer, LayerColours};
 pub use mesh::MeshDocument;
 pub use obj::obj;
 pub use outlines::Curves;

@@ -1,23 +1,16 @@
 //! A picture of a region for a person to look at.
 
 use glam::DVec2;
-use resvg::tiny_skia::{Color, FillRule, Paint, PathBuilder, Pixmap, Stroke, Transform};
 
 use super::ExportError;
+use super::canvas::{Canvas, INK, STRUT, check_pixels};
 use crate::fabricate::Bridge;
 use crate::planar::Region;
 
 /// The longer side in pixels when nothing else is asked for.
 pub const DEFAULT_PIXELS: u32 = 1600;
-/// Beyond this a picture takes gigabytes; below, nothing can be seen.
-const PIXELS: std::ops::RangeInclusive<u32> = 16..=16_384;
 /// The margin on each side, as a part of the longer side of the ink.
 const MARGIN: f64 = 0.04;
-pub(super) const PAPER: [u8; 3] = [0xf7, 0xf4, 0xee];
-const INK: [u8; 3] = [0x22, 0x30, 0x4f];
-/// Ink that a strut adds, and where a slit took ink away.
-const STRUT: [u8; 3] = [0xe4, 0x6a, 0x24];
-const SLIT: [u8; 3] = [0x2c, 0xa8, 0x8d];
 /// Where pieces meet, and around what is narrow.
 const SEAM: [u8; 3] = [0x5b, 0xa7, 0xe0];
 const NARROW: [u8; 3] = [0xd6, 0x28, 0x39];
@@ -48,117 +41,26 @@ pub struct Marks<'m> {
 pub fn png(region: &Region, marks: &Marks<'_>, longer_side: u32) -> Result<Vec<u8>, ExportError> {
     check_pixels(longer_side)?;
     let (low, high) = region.bounds_mm().ok_or(ExportError::Empty)?;
-    let size = high - low;
-    let margin = MARGIN * size.max_element();
-    let scale = f64::from(longer_side) / (size.max_element() + 2.0 * margin);
-    let [width, height] = (size + 2.0 * margin).to_array().map(|mm| (mm * scale).round() as u32);
-    let picture = Pixmap::new(width, height).ok_or(ExportError::Picture)?;
-    let mut sheet = Sheet { picture, corner: DVec2::new(low.x - margin, high.y + margin), scale };
-    sheet.picture.fill(Color::from_rgba8(PAPER[0], PAPER[1], PAPER[2], 255));
-
-    let mut ink = PathBuilder::new();
-    for contour in region.contours() {
-        sheet.trace(&mut ink, contour.points().iter().map(|&p| region.grid().to_mm(p)), true);
+    let margin = MARGIN * (high - low).max_element();
+    let mut canvas = Canvas::new(low - margin, high + margin, longer_side)?;
+    canvas.region(region, DVec2::ZERO, INK)?;
+    canvas.bridges(marks.bridges, DVec2::ZERO)?;
+    if let Some(fallen) = marks.fallen {
+        canvas.region(fallen, DVec2::ZERO, STRUT)?;
     }
-    sheet.fill(ink, FillRule::EvenOdd, INK)?;
-    for (are_struts, colour) in [(true, STRUT), (false, SLIT)] {
-        let mut path = PathBuilder::new();
-        for bridge in marks.bridges.iter().filter(|b| b.kind.is_strut() == are_struts) {
-            for outline in
-                std::iter::once(&bridge.corners_mm[..]).chain(bridge.pockets_mm.iter().map(Vec::as_slice))
-            {
-                sheet.trace(&mut path, outline.iter().map(|&p| DVec2::from(p)), true);
-            }
-        }
-        sheet.fill(path, FillRule::Winding, colour)?;
-    }
-    let mut fallen = PathBuilder::new();
-    for (region, contour) in
-        marks.fallen.iter().flat_map(|region| region.contours().map(move |c| (region, c)))
-    {
-        sheet.trace(&mut fallen, contour.points().iter().map(|&p| region.grid().to_mm(p)), true);
-    }
-    sheet.fill(fallen, FillRule::EvenOdd, STRUT)?;
-    let mut seams = PathBuilder::new();
-    for seam in marks.seams_mm {
-        sheet.trace(&mut seams, seam.iter().copied(), false);
-    }
-    sheet.draw(seams, SEAM_WIDTH * f64::from(longer_side), SEAM)?;
-    let mut rings = PathBuilder::new();
-    for &(middle, width_mm) in marks.narrow_mm {
-        let radius = (RING * width_mm * scale).max(LEAST_RING * f64::from(longer_side));
-        let at = sheet.at(middle);
-        rings.push_circle(at.x as f32, at.y as f32, radius as f32);
-    }
-    sheet.draw(rings, NARROW_WIDTH * f64::from(longer_side), NARROW)?;
-    sheet.picture.encode_png().map_err(|_| ExportError::Picture)
-}
-
-/// A picture with its scale.
-struct Sheet {
-    picture: Pixmap,
-    /// The upper left corner, in millimetres.
-    corner: DVec2,
-    /// Pixels for each millimetre.
-    scale: f64,
-}
-
-impl Sheet {
-    /// Where a point lies, in pixels from the upper left corner.
-    fn at(&self, p: DVec2) -> DVec2 {
-        DVec2::new(p.x - self.corner.x, self.corner.y - p.y) * self.scale
-    }
-
-    fn trace(&self, path: &mut PathBuilder, points: impl Iterator<Item = DVec2>, is_closed: bool) {
-        for (i, p) in points.map(|p| self.at(p)).enumerate() {
-            let (x, y) = (p.x as f32, p.y as f32);
-            if i == 0 { path.move_to(x, y) } else { path.line_to(x, y) }
-        }
-        if is_closed {
-            path.close();
-        }
-    }
-
-    fn fill(&mut self, path: PathBuilder, rule: FillRule, colour: [u8; 3]) -> Result<(), ExportError> {
-        if path.is_empty() {
-            return Ok(());
-        }
-        let path = path.finish().ok_or(ExportError::Picture)?;
-        self.picture.fill_path(&path, &paint(colour), rule, Transform::identity(), None);
-        Ok(())
-    }
-
-    fn draw(&mut self, path: PathBuilder, width: f64, colour: [u8; 3]) -> Result<(), ExportError> {
-        if path.is_empty() {
-            return Ok(());
-        }
-        let path = path.finish().ok_or(ExportError::Picture)?;
-        let stroke = Stroke { width: width as f32, ..Stroke::default() };
-        self.picture.stroke_path(&path, &paint(colour), &stroke, Transform::identity(), None);
-        Ok(())
-    }
-}
-
-fn paint([r, g, b]: [u8; 3]) -> Paint<'static> {
-    let mut paint = Paint::default();
-    paint.set_color_rgba8(r, g, b, 255);
-    paint
-}
-
-/// Refuses sizes that no picture can have.
-pub(super) fn check_pixels(longer_side: u32) -> Result<(), ExportError> {
-    match PIXELS.contains(&longer_side) {
-        true => Ok(()),
-        false => Err(ExportError::Option {
-            name: "picture size",
-            found: longer_side.into(),
-            wanted: "from 16 to 16384 pixels",
-        }),
-    }
+    let pixels = f64::from(longer_side);
+    let seams = marks.seams_mm.iter().map(|seam| seam.iter().copied());
+    canvas.lines(seams, SEAM_WIDTH * pixels, SEAM)?;
+    let scale = canvas.scale;
+    let radius = |width_mm: f64| (RING * width_mm * scale).max(LEAST_RING * pixels);
+    let rings = marks.narrow_mm.iter().map(|&(middle, width_mm)| (middle, radius(width_mm)));
+    canvas.rings(rings, NARROW_WIDTH * pixels, NARROW)?;
+    canvas.encode()
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::canvas::{PAPER, Seen};
     use super::*;
     use crate::planar::{Grid, GridPoint};
 
@@ -176,12 +78,9 @@ mod tests {
 
     #[test]
     fn ink_is_dark_and_holes_are_paper() {
-        let picture = Pixmap::decode_png(&png(&frame(), &Marks::default(), 864).unwrap()).unwrap();
-        assert_eq!((picture.width(), picture.height()), (864, 464));
-        let rgb = |x, y| {
-            let c = picture.pixel(x, y).unwrap();
-            [c.red(), c.green(), c.blue()]
-        };
+        let picture = Seen::new(&png(&frame(), &Marks::default(), 864).unwrap());
+        assert_eq!(picture.size(), [864, 464]);
+        let rgb = |x, y| picture.colour(x, y);
         assert_eq!(rgb(5, 5), PAPER);
         assert_eq!(rgb(432, 232), PAPER);
         assert_eq!(rgb(60, 232), INK);
@@ -193,10 +92,8 @@ mod tests {
         let seams = [vec![DVec2::new(50.0, 5.0), DVec2::new(50.0, 55.0)]];
         let marks =
             Marks { seams_mm: &seams, narrow_mm: &[(DVec2::new(15.0, 30.0), 2.0)], ..Marks::default() };
-        let picture = Pixmap::decode_png(&png(&frame(), &marks, 4000).unwrap()).unwrap();
-        let has = |[r, g, b]: [u8; 3]| {
-            picture.pixels().iter().filter(|p| [p.red(), p.green(), p.blue()] == [r, g, b]).count()
-        };
+        let picture = Seen::new(&png(&frame(), &marks, 4000).unwrap());
+        let has = |colour| picture.count(colour);
         assert!(has(SEAM) > 3000 && has(NARROW) > 400, "{} {}", has(SEAM), has(NARROW));
     }
 

@@ -30,6 +30,7 @@ mod sheet;
 mod simplify;
 mod snap;
 mod solid;
+mod workshop;
 
 pub use bed::Bed;
 pub use bridge::{Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts, bridge};
@@ -37,12 +38,13 @@ pub use enforce::{Change, EnforceError, EnforceOptions, Enforced, TIP, enforce};
 pub use kerf::{KerfError, check_kerf, compensated};
 pub use limit::{Limited, raise_within};
 pub use material::{Material, MaterialReport};
-pub use process::{Process, Workshop, WorkshopError, table as process_table};
+pub use process::{CUT_COLOUR, ENGRAVE_COLOUR, Process, table as process_table};
 pub use profile::Profile;
 pub use raise::raise;
-pub use sheet::{Carved, FallenPiece, SheetError, SheetSize, carved, on_sheet, plate};
+pub use sheet::{Carved, FallenPiece, SheetError, SheetSize, carved, on_sheet, plate, shift_onto};
 pub use snap::snapped_to_f32;
 pub use solid::{Shell, Solid, extrude};
+pub use workshop::{Workshop, WorkshopError};
 
 use glam::DVec2;
 use thiserror::Error;

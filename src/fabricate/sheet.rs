@@ -119,8 +119,14 @@ pub fn on_sheet(part: &Region, sheet: SheetSize, edge_mm: f64) -> Result<Region,
     // The grids are powers of two: only onto a coarser one would points move, and this is as fine as there is.
     let placed = part.placed(grid, |p| p)?;
     // By whole steps, so that the part stays what it is.
-    let by = (size_mm - part_mm) / 2.0 - low;
+    let by = shift_onto(part, sheet);
     Ok(placed.shifted(GridPoint::new(grid.steps(by.x), grid.steps(by.y))))
+}
+
+/// How far a part is moved to lie in the middle of a plate whose lower left corner is the origin.
+pub fn shift_onto(part: &Region, sheet: SheetSize) -> DVec2 {
+    let (low, high) = part.bounds_mm().unwrap_or_default();
+    (DVec2::new(sheet.width_mm, sheet.height_mm) - low - high) / 2.0
 }
 
 /// The plate's own outline as a region, on `grid`.

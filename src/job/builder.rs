@@ -53,6 +53,7 @@ pub struct BandBuilder {
     pub(super) stitch: StitchMethod,
     pub(super) bridge_mm: Option<f64>,
     pub(super) choice: Choice,
+    pub(super) contact_sheet: bool,
     pub(super) counted: bool,
     pub(super) memory_limit: usize,
     pub(super) laser: LaserOptions,
@@ -87,6 +88,7 @@ impl BandBuilder {
             stitch: StitchMethod::default(),
             bridge_mm: None,
             choice: Choice::default(),
+            contact_sheet: true,
             counted: false,
             memory_limit: DEFAULT_MEMORY_LIMIT,
             laser: LaserOptions::default(),
@@ -232,6 +234,12 @@ impl BandBuilder {
         self
     }
 
+    /// Whether [`write_numbered`](super::write_numbered) adds a contact sheet of all bands; it does unless told otherwise.
+    pub fn contact_sheet(mut self, contact_sheet: bool) -> Self {
+        self.contact_sheet = contact_sheet;
+        self
+    }
+
     /// Whether the report tells how many sequences meet the constraints, where they can be counted.
     pub fn counted(mut self, counted: bool) -> Self {
         self.counted = counted;
@@ -332,12 +340,18 @@ impl BandJob {
     pub fn check_outputs(&self, outputs: &[Output], report_file: Option<&Target>) -> Result<(), JobError> {
         self.options.laser.check(outputs)?;
         self.options.picture.check(outputs)?;
+        self.check_targets(outputs.iter().map(Output::target).chain(report_file))
+    }
+
+    /// Refuses targets that would overwrite each other or an input.
+    fn check_targets<'t>(&self, targets: impl IntoIterator<Item = &'t Target>) -> Result<(), JobError> {
         let curve = match &self.options.along {
             CurveSpec::Path { file, .. } => Some(file.as_path()),
             CurveSpec::Line { .. } | CurveSpec::Circle { .. } => None,
         };
-        let inputs: Vec<&Path> = std::iter::once(self.options.exemplar.as_path()).chain(curve).collect();
-        Output::check(outputs.iter().map(Output::target).chain(report_file), &inputs)
+        let drawings = curve.into_iter().chain(self.options.laser.engrave.as_deref());
+        let inputs: Vec<&Path> = std::iter::once(self.options.exemplar.as_path()).chain(drawings).collect();
+        Output::check(targets, &inputs)
     }
 
     /// Makes the band; `progress` is told of each stage as it begins.
@@ -357,8 +371,14 @@ impl BandJob {
         Band::all(self, progress)
     }
 
-    /// The same check for bands that [`write_numbered`](super::write_numbered) is going to write: as many as the job's
-    /// [`Choice`] asks for.
+    /// Where the contact sheet of numbered bands goes, if there is to be one and some output is a file.
+    pub(super) fn contact_sheet(&self, outputs: &[Output]) -> Option<Target> {
+        let mut sheets = outputs.iter().filter_map(|output| output.target().contact_sheet());
+        sheets.next().filter(|_| self.options.contact_sheet)
+    }
+
+    /// The same check for bands that [`write_numbered`](super::write_numbered) is going to write, as many as the job's
+    /// [`Choice`] asks for, with their contact sheet.
     ///
     /// # Errors
     /// As [`Output::check`].
@@ -370,6 +390,7 @@ impl BandJob {
         (1..=most).try_for_each(|number| {
             let outputs: Vec<Output> = outputs.iter().map(|output| output.numbered(number)).collect();
             self.check_outputs(&outputs, report_file.map(|target| target.numbered(number)).as_ref())
-        })
+        })?;
+        self.contact_sheet(outputs).map_or(Ok(()), |sheet| self.check_targets([&sheet]))
     }
 }

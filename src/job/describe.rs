@@ -95,6 +95,7 @@ pub(super) fn describe(
         squeezes: map.squeezes().to_vec(),
         bridges: None,
         weighed: Vec::new(),
+        contact_sheet: None,
         seams: SeamReport {
             count: outline.seams.len(),
             jumps: outline.seams.iter().filter(|s| !s.is_natural).count(),

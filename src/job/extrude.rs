@@ -118,7 +118,8 @@ pub fn extrude(
     outputs: &[Output],
     progress: &mut dyn FnMut(Stage),
 ) -> Result<ExtrudeReport, JobError> {
-    Output::check(outputs.iter().map(Output::target), &[file])?;
+    let inputs: Vec<&Path> = std::iter::once(file).chain(making.laser.engrave.as_deref()).collect();
+    Output::check(outputs.iter().map(Output::target), &inputs)?;
     making.check(outputs)?;
     let ExtrudeMaking { tolerances, material, print, laser, picture, .. } = making;
     let (thickness_mm, enforce) = (making.thickness_mm, making.enforce);

@@ -3,15 +3,19 @@
 //! The contours are moved by half of the kerf and fitted with lines and arcs. Each file is read again: its lines must
 //! be sound, leave as many components and holes as are wanted, and do so too when the kerf is taken off again.
 
+use std::path::PathBuf;
+
 use glam::DVec2;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::engrave::Engraving;
 use super::error::JobError;
 use super::extrude::name;
 use super::output::{Format, Output, Pending};
+use super::report::InputReport;
 use super::stage::{Clock, Stage};
-use crate::export::{self, Curves, CutLines, CutNumbers, DxfVersion, Layer, Marks, SvgOptions};
+use crate::export::{self, Curves, CutLines, CutNumbers, DxfVersion, Layer, LayerColours, Marks, SvgOptions};
 use crate::fabricate::{self, Counts, FallenPiece, SheetSize};
 use crate::planar::{GridPoint, Region};
 use crate::verify::{self, CutReport, Expected};
@@ -25,7 +29,7 @@ const EDGE_KERFS: f64 = 3.0;
 const READ_PART: f64 = 0.03;
 
 /// What files of cut lines are to be like. Lengths are millimetres.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct LaserOptions {
     /// Whether an SVG has cut lines instead of ink. A DXF always has.
     pub cut: bool,
@@ -39,6 +43,10 @@ pub struct LaserOptions {
     pub sheet: Option<SheetSize>,
     /// Whether the part is cut out of the plate as a sign: what is left of the plate is kept, not the part.
     pub carve: bool,
+    /// A drawing on the part's page whose outlines are engraved on it.
+    pub engrave: Option<PathBuf>,
+    /// The colours of the layers.
+    pub colours: LayerColours,
 }
 
 impl LaserOptions {
@@ -78,12 +86,15 @@ impl LaserOptions {
         let given = [
             ("--kerf", self.kerf_mm.is_some()),
             ("--sheet", self.sheet.is_some()),
+            ("--engrave", self.engrave.is_some()),
             ("--curves", self.curves != Curves::default()),
             ("--dxf-version", self.dxf_version != DxfVersion::default()),
         ];
         let none_cut = !outputs.iter().any(|output| self.cuts(output.format()));
+        // A picture of a sign shows its plate, and the kerf is tried on it; what is engraved is in cut files only.
+        let shows = |option| self.carve && option != "--engrave";
         if let Some((option, _)) =
-            given.into_iter().find(|(_, is_given)| *is_given && none_cut && !self.carve)
+            given.into_iter().find(|&(option, is_given)| is_given && none_cut && !shows(option))
         {
             let wanted = "write a .dxf, or an .svg with --cut, or leave it out";
             return refuse(option, "no output has cut lines", wanted);
@@ -112,6 +123,8 @@ pub struct LaserReport {
     pub holes: usize,
     /// When the part was carved out of a plate: the pieces of the plate that fall out.
     pub falls_out: Option<Vec<FallenPiece>>,
+    /// The drawing that is engraved, if there is one.
+    pub engraved: Option<InputReport>,
     /// What cutting takes.
     #[serde(flatten)]
     pub numbers: CutNumbers,
@@ -165,6 +178,11 @@ impl Cutting {
             Some(kerf_mm) => fabricate::compensated(&kept, kerf_mm, curve_chord_mm)?,
             None => kept.clone(),
         };
+        let shift = options.sheet.map_or(DVec2::ZERO, |sheet| fabricate::shift_onto(part, sheet));
+        let read = |file: &PathBuf| Engraving::read(file, chord_mm - curve_chord_mm);
+        let engraving = options.engrave.as_ref().map(read).transpose()?;
+        let laid = |of: &Engraving| of.on(&kept, fallen.as_ref(), shift, cut.grid(), chord_mm);
+        let engraved = engraving.as_ref().map(laid).transpose()?;
         let page_mm = options.sheet.map_or(page_mm, |sheet| DVec2::new(sheet.width_mm, sheet.height_mm));
         let plate = match options.sheet.filter(|_| !options.carve) {
             Some(sheet) => Some(fabricate::plate(cut.grid(), sheet).map_err(JobError::Sheet)?),
@@ -176,10 +194,11 @@ impl Cutting {
         let by = GridPoint::new(margin(low.x), margin(low.y));
         let corner = cut.grid().to_mm(by);
         let page_mm = page_mm.max(high + curve_chord_mm) + corner;
-        let [cut, plate] = [Some(cut), plate].map(|region| region.map(|region| region.shifted(by)));
-        let cut_layer = cut.iter().map(|region| (Layer::Cut, region));
-        let layers: Vec<_> = cut_layer.chain(plate.iter().map(|region| (Layer::Sheet, region))).collect();
-        let lines = CutLines::new(&layers, options.curves, curve_chord_mm)?;
+        let layers = [(Layer::Engrave, engraved), (Layer::Cut, Some(cut)), (Layer::Sheet, plate)];
+        let layers = layers.map(|(layer, region)| (layer, region.map(|region| region.shifted(by))));
+        let layers: Vec<_> =
+            layers.iter().filter_map(|(layer, region)| Some((*layer, region.as_ref()?))).collect();
+        let lines = CutLines::new(&layers, options.curves, curve_chord_mm)?.with_colours(options.colours);
         let Counts { components, holes } = Counts::of(&kept);
         let report = LaserReport {
             kerf_mm: options.kerf_mm,
@@ -187,10 +206,11 @@ impl Cutting {
             components,
             holes,
             falls_out,
+            engraved: engraving.map(|engraving| engraving.input),
             numbers: lines.numbers(),
             files: Vec::new(),
         };
-        Ok(Self { options: *options, lines, page_mm, chord_mm, description, kept, fallen, report })
+        Ok(Self { options: options.clone(), lines, page_mm, chord_mm, description, kept, fallen, report })
     }
 
     /// One output, which has passed, and its bytes.

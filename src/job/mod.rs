@@ -29,6 +29,7 @@ mod certificate;
 mod choice;
 mod cut;
 mod describe;
+mod engrave;
 mod error;
 mod extrude;
 mod json;
@@ -85,7 +86,7 @@ pub use several::write_numbered;
 pub use stage::Stage;
 pub use ways::WayReport;
 
-pub use crate::export::{Curves, DxfVersion, View};
+pub use crate::export::{Curves, DxfVersion, LayerColours, View};
 pub use crate::fabricate::SheetSize;
 pub use crate::fabricate::{Material, Process, Workshop};
 pub use crate::fit::StitchMethod;

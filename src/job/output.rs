@@ -70,6 +70,20 @@ impl Target {
     }
 }
 
+impl Target {
+    /// The contact sheet beside numbered files: `out-sheet.png` for `out.svg`. Standard output has none.
+    pub fn contact_sheet(&self) -> Option<Self> {
+        match self {
+            Self::Stdout => None,
+            Self::File(path) => {
+                let mut name = path.file_stem().unwrap_or_default().to_os_string();
+                name.push("-sheet.png");
+                Some(Self::File(path.with_file_name(name)))
+            }
+        }
+    }
+}
+
 impl std::fmt::Display for Target {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {

@@ -171,6 +171,8 @@ pub struct BandReport {
     pub bridges: Option<BridgesReport>,
     /// Where bridges were allowed: the sequences that were weighed against each other, the best first.
     pub weighed: Vec<WayReport>,
+    /// The picture of all bands that were written together, with their numbers, if there is one.
+    pub contact_sheet: Option<String>,
     /// The seams.
     pub seams: SeamReport,
     /// How the pieces were bent to meet at the seams.

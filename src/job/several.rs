@@ -1,13 +1,19 @@
-//! Several bands of one job, written together or not at all.
+//! Several bands of one job and their contact sheet, written together or not at all.
 
 use super::band::Band;
 use super::error::JobError;
-use super::output::{Output, Target, persist};
+use super::extrude::name;
+use super::output::{Output, Pending, Target, persist};
 use super::report::BandReport;
 use super::stage::Stage;
+use crate::export::{Shown, contact_sheet};
+
+/// The longer side of a contact sheet in pixels: many bands share it.
+const SHEET_PIXELS: u32 = 2400;
 
 /// Writes `bands` as [`Band::write`] writes one, with the number of each, from 1, in the names of its files (see
-/// [`Target::numbered`]). Files get their names when those of all bands have passed.
+/// [`Target::numbered`]), and beside the first file a contact sheet of them all, if the job has one (see
+/// [`Target::contact_sheet`]). Files get their names when those of all bands have passed.
 ///
 /// # Errors
 /// As [`Band::write`]; then no band has a file. [`JobError::Option`] also for several bands on standard output.
@@ -35,7 +41,25 @@ pub fn write_numbered(
         pending.extend(files);
         reports.push((report, report_file));
     }
+    if let Some(target) = bands.first().and_then(|band| band.job.contact_sheet(outputs)) {
+        progress(Stage::Png);
+        pending.push(Pending::new(&target, sheet(bands)?)?);
+        let file = name(&target).display().to_string();
+        reports.iter_mut().for_each(|(report, _)| report.contact_sheet = Some(file.clone()));
+    }
     let told = reports.iter().filter_map(|(report, file)| Some((file.as_ref()?, report.to_json())));
     persist(pending, told.collect::<Vec<_>>())?;
     Ok(reports.into_iter().map(|(report, _)| report).collect())
+}
+
+/// The contact sheet.
+fn sheet(bands: &[Band]) -> Result<Vec<u8>, JobError> {
+    let numbers: Vec<String> = (1..=bands.len()).map(|number| format!("{number:02}")).collect();
+    let shown = |(band, number)| {
+        let band: &Band = band;
+        let bridges = band.report.bridges.as_ref().map_or(&[][..], |laid| &laid.bridges);
+        Shown { number, region: band.region(), bridges }
+    };
+    let shown: Vec<Shown<'_>> = bands.iter().zip(numbers.iter().map(String::as_str)).map(shown).collect();
+    Ok(contact_sheet(&shown, SHEET_PIXELS)?)
 }

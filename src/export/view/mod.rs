@@ -18,7 +18,7 @@ use self::camera::{Camera, Raster};
 use self::depth::{Depths, NONE};
 use self::light::{Light, Place, light, towards_lamp};
 use super::ExportError;
-use super::png::{PAPER, check_pixels};
+use super::canvas::{PAPER, check_pixels};
 use crate::fabricate::Solid;
 
 /// Cells along the side of a pixel.
