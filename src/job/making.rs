@@ -9,8 +9,6 @@ use crate::fabricate::{self, Change, Counts, EnforceOptions, Material, MaterialR
 use crate::planar::{Region, Tolerances};
 use crate::verify::{self, NarrowPlaces};
 
-/// So many of the worst places are reported, of ink and of gaps.
-const WORST: usize = 10;
 /// So many of the greatest changes are reported.
 const CHANGES: usize = 10;
 
@@ -83,7 +81,7 @@ impl EnforcedReport {
 /// The worst places of a region, whatever machine will make it.
 pub(super) fn worst_places(region: &Region, tolerances: &Tolerances) -> NarrowPlaces {
     // As finely as a written file is judged.
-    verify::narrow_places(region, WORST, f64::INFINITY, 0.25 * tolerances.chord_mm())
+    verify::narrow_places(region, NarrowPlaces::WORST, f64::INFINITY, 0.25 * tolerances.chord_mm())
 }
 
 /// The numbers of a part that cost money. Lengths are millimetres.

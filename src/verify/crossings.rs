@@ -2,81 +2,126 @@
 //!
 //! Two facets of a sound surface share an edge, a corner, or nothing. Whether they share more is decided by
 //! exact predicates: an edge of one facet against the other facet, both closed sets, leaving out the corners
-//! that both have. Pairs are found by their bounding boxes; most of them lie on two sides of a plane or an edge,
-//! which is tried first. Excluded: facets without area, which are a fault
+//! that both have. Pairs are found by their bounding boxes ([`super::boxes`]); most of them lie on two sides of a plane or,
+//! seen from above, of an edge, which is tried first. Excluded: facets without area, which are a fault
 //! of their own, and pairs with the same three corners, which are duplicates.
 
 use glam::{DVec2, DVec3};
 use robust::{Coord, Coord3D, orient2d, orient3d};
-use rstar::primitives::{GeomWithData, Rectangle};
-use rstar::{AABB, RTree};
 
-type Box3 = GeomWithData<Rectangle<[f64; 3]>, usize>;
+use super::boxes::{Box3, pairs_that_meet};
+
+/// No facet.
+const NONE: usize = usize::MAX;
 
 /// The facets that cross or touch another one, each once and with a place near that; facets are numbers of
 /// points of `at`.
 pub(super) fn crossings(at: &[DVec3], facets: &[[usize; 3]]) -> Vec<(usize, DVec3)> {
-    let boxed = |(number, facet): (usize, &[usize; 3])| {
-        let [a, b, c] = facet.map(|v| at[v]);
-        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-        let is_flat = (b - a).cross(c - a) == DVec3::ZERO;
-        let bounds = Rectangle::from_corners(low.to_array(), high.to_array());
-        (!is_flat).then_some(Box3::new(bounds, number))
-    };
-    let boxes: Vec<Box3> = facets.iter().enumerate().filter_map(boxed).collect();
-    let tree = RTree::bulk_load(boxes.clone());
-    let mut found = Vec::new();
-    for one in &boxes {
-        let (low, high) = (one.geom().lower(), one.geom().upper());
-        let other = tree
-            .locate_in_envelope_intersecting(AABB::from_corners(low, high))
-            .filter(|other| other.data > one.data && meet(at, facets[one.data], facets[other.data]))
-            .min_by_key(|other| other.data);
-        if let Some(other) = other {
-            // Somewhere in what the two boxes have in common.
-            let low = DVec3::from_array(low).max(DVec3::from_array(other.geom().lower()));
-            let high = DVec3::from_array(high).min(DVec3::from_array(other.geom().upper()));
-            found.push((one.data, (low + high) * 0.5));
+    let is_flat = |&[a, b, c]: &[usize; 3]| (at[b] - at[a]).cross(at[c] - at[a]) == DVec3::ZERO;
+    let bounds = |&[a, b, c]: &[usize; 3]| (at[a].min(at[b]).min(at[c]), at[a].max(at[b]).max(at[c]));
+    let numbers: Vec<usize> = (0..facets.len()).filter(|&facet| !is_flat(&facets[facet])).collect();
+    let boxes: Vec<Box3> = numbers.iter().map(|&facet| bounds(&facets[facet])).collect();
+    let kinds: Vec<Kind> = numbers.iter().map(|&facet| Kind::of(facets[facet].map(|v| at[v]))).collect();
+    let face = |i: usize| Face { corners: facets[numbers[i]], kind: kinds[i] };
+    // The first facet after each that it meets.
+    let mut partners = vec![NONE; numbers.len()];
+    pairs_that_meet(&boxes, |i, j| {
+        if j < partners[i] && meet(at, face(i), face(j)) {
+            partners[i] = j;
+        }
+    });
+    let met = partners.iter().enumerate().filter(|&(_, &j)| j != NONE);
+    met.map(|(i, &j)| {
+        // Somewhere in what the two boxes have in common.
+        let (low, high) = (boxes[i].0.max(boxes[j].0), boxes[i].1.min(boxes[j].1));
+        (numbers[i], (low + high) * 0.5)
+    })
+    .collect()
+}
+
+/// What makes it easy to tell the sides of a facet. Caps are level and walls upright, and for those the predicate of
+/// space would go to its last resort for each point in their plane.
+#[derive(Debug, Clone, Copy)]
+enum Kind {
+    /// All corners are equally high. With that, 1 if they turn counter-clockwise seen from above, and −1 if clockwise.
+    Level(f64),
+    /// Of its corners from this one on, the second is above or below the first. With that, 1 if it is below, −1 if above.
+    Upright(u8, f64),
+    /// Neither.
+    Leaning,
+}
+
+impl Kind {
+    fn of(t: [DVec3; 3]) -> Self {
+        let [a, b, c] = t.map(DVec3::truncate);
+        if t.iter().all(|v| v.z == t[0].z) {
+            return Self::Level(sign(turn(a, b, c)));
+        }
+        match [(a, b), (b, c), (c, a)].iter().position(|(p, q)| p == q) {
+            Some(i) => Self::Upright(i as u8, sign(t[i].z - t[(i + 1) % 3].z)),
+            None => Self::Leaning,
         }
     }
-    found
+}
+
+/// A facet by its corners.
+#[derive(Clone, Copy)]
+struct Face {
+    corners: [usize; 3],
+    kind: Kind,
+}
+
+impl Face {
+    fn has(&self, corner: usize) -> bool {
+        self.corners.contains(&corner)
+    }
+
+    fn at(&self, at: &[DVec3]) -> Triangle {
+        Triangle { t: self.corners.map(|v| at[v]), kind: self.kind }
+    }
+}
+
+/// A facet with area by its points.
+#[derive(Clone, Copy)]
+struct Triangle {
+    t: [DVec3; 3],
+    kind: Kind,
 }
 
 /// Whether two facets have more in common than corners and an edge that both have.
-fn meet(at: &[DVec3], one: [usize; 3], other: [usize; 3]) -> bool {
-    let shared = one.iter().filter(|v| other.contains(v)).count();
-    let (s, t) = (one.map(|v| at[v]), other.map(|v| at[v]));
+fn meet(at: &[DVec3], one: Face, other: Face) -> bool {
     if is_beside(at, one, other) || is_beside(at, other, one) {
         return false;
     }
-    match shared {
-        0 => (0..3).any(|i| pierces(s[i], s[(i + 1) % 3], t) || pierces(t[i], t[(i + 1) % 3], s)),
+    let (s, t) = (one.at(at), other.at(at));
+    match one.corners.iter().filter(|&&v| other.has(v)).count() {
+        0 => (0..3).any(|i| s.is_pierced(t.t[i], t.t[(i + 1) % 3]) || t.is_pierced(s.t[i], s.t[(i + 1) % 3])),
         // What they share beyond the common corner ends on an edge that does not have it.
         1 => {
-            let [a, b] = opposite(one, |v| other.contains(&v)).map(|v| at[v]);
-            let [c, d] = opposite(other, |v| one.contains(&v)).map(|v| at[v]);
-            pierces(a, b, t) || pierces(c, d, s)
+            let [a, b] = opposite(one.corners, |v| other.has(v)).map(|v| at[v]);
+            let [c, d] = opposite(other.corners, |v| one.has(v)).map(|v| at[v]);
+            t.is_pierced(a, b) || s.is_pierced(c, d)
         }
         2 => folded(at, one, other),
         _ => false,
     }
 }
 
-/// Whether the corners that only `other` has lie all on one side of the plane of `facet`, or, where both are level and
-/// equally high, all beyond an edge of it. Then the two have no more in common than their corners do. This settles
+/// Whether the corners that only `other` has lie all on one side of the plane of `facet`; or, where that is level, all
+/// beyond an edge of it as seen from above. Then the two have no more in common than their corners do. This settles
 /// nearly all pairs.
-fn is_beside(at: &[DVec3], facet: [usize; 3], other: [usize; 3]) -> bool {
-    let t = facet.map(|v| at[v]);
-    let mut own = other.into_iter().filter(|v| !facet.contains(v)).map(|v| at[v]);
-    if facet.iter().chain(&other).any(|&v| at[v].z != t[0].z) {
-        let Some(first) = own.next().map(|p| side(t, p)) else { return false };
-        return first != 0.0 && own.all(|p| side(t, p) * first.signum() > 0.0);
+fn is_beside(at: &[DVec3], facet: Face, other: Face) -> bool {
+    let triangle = facet.at(at);
+    let own = other.corners.into_iter().filter(|&v| !facet.has(v)).map(|v| at[v]);
+    let Some(first) = own.clone().next().map(|p| triangle.side(p)) else { return false };
+    if first != 0.0 && own.clone().all(|p| triangle.side(p) * first.signum() > 0.0) {
+        return true;
     }
+    let Kind::Level(inside) = facet.kind else { return false };
     (0..3).any(|i| {
-        let [a, b, c] = [0, 1, 2].map(|k| t[(i + k) % 3].truncate());
+        let [a, b] = [i, (i + 1) % 3].map(|k| triangle.t[k].truncate());
         // From a corner inside, the other one would reach across.
-        let inside = turn(a, b, c).signum();
-        !other.contains(&facet[(i + 2) % 3]) && own.clone().all(|p| turn(a, b, p.truncate()) * inside < 0.0)
+        !other.has(facet.corners[(i + 2) % 3]) && own.clone().all(|p| turn(a, b, p.truncate()) * inside < 0.0)
     })
 }
 
@@ -87,35 +132,64 @@ fn opposite(facet: [usize; 3], is_shared: impl Fn(usize) -> bool) -> [usize; 2] 
 }
 
 /// Whether two facets with a common edge lie in one plane and on the same side of the edge.
-fn folded(at: &[DVec3], one: [usize; 3], other: [usize; 3]) -> bool {
-    let apex = |facet: [usize; 3], beside: [usize; 3]| {
-        facet.into_iter().find(|v| !beside.contains(v)).map(|v| at[v]).expect("two corners are shared")
+fn folded(at: &[DVec3], one: Face, other: Face) -> bool {
+    let apex = |facet: Face, beside: Face| {
+        facet.corners.into_iter().find(|&v| !beside.has(v)).map(|v| at[v]).expect("two corners are shared")
     };
     let (p, q) = (apex(one, other), apex(other, one));
-    let triangle = one.map(|v| at[v]);
-    if side(triangle, q) != 0.0 {
+    let triangle = one.at(at);
+    if triangle.side(q) != 0.0 {
         return false;
     }
-    let axis = flat_axis(triangle);
-    let mut ends = one.into_iter().filter(|v| other.contains(v)).map(|v| flat(at[v], axis));
+    let axis = triangle.flat_axis();
+    let mut ends = one.corners.into_iter().filter(|&v| other.has(v)).map(|v| flat(at[v], axis));
     let (a, b) = (ends.next().expect("two are shared"), ends.next().expect("two are shared"));
     turn(a, b, flat(p, axis)) * turn(a, b, flat(q, axis)) > 0.0
 }
 
-/// Whether the closed segment from `p` to `q` meets the closed triangle `t`. Exact.
-fn pierces(p: DVec3, q: DVec3, t: [DVec3; 3]) -> bool {
-    let (above, below) = (side(t, p), side(t, q));
-    if (above > 0.0 && below > 0.0) || (above < 0.0 && below < 0.0) {
-        return false;
+impl Triangle {
+    /// Whether the closed segment from `p` to `q` meets the closed triangle. Exact.
+    fn is_pierced(&self, p: DVec3, q: DVec3) -> bool {
+        let (above, below) = (self.side(p), self.side(q));
+        if (above > 0.0 && below > 0.0) || (above < 0.0 && below < 0.0) {
+            return false;
+        }
+        if above == 0.0 && below == 0.0 {
+            let axis = self.flat_axis();
+            return meets_flat(flat(p, axis), flat(q, axis), self.t.map(|v| flat(v, axis)));
+        }
+        // The line goes round all three sides the same way.
+        let [a, b, c] = self.t;
+        let turns = [(a, b), (b, c), (c, a)].map(|(u, v)| {
+            let t = [p, q, u];
+            Triangle { t, kind: Kind::of(t) }.side(v)
+        });
+        turns.iter().all(|&x| x >= 0.0) || turns.iter().all(|&x| x <= 0.0)
     }
-    if above == 0.0 && below == 0.0 {
-        let axis = flat_axis(t);
-        return meets_flat(flat(p, axis), flat(q, axis), t.map(|v| flat(v, axis)));
+
+    /// The side of its plane on which `p` lies; only the sign counts, and it is exact. A corner given twice has no plane, and
+    /// no side of it.
+    fn side(&self, p: DVec3) -> f64 {
+        match self.kind {
+            Kind::Level(turn) => turn * (self.t[0].z - p.z),
+            Kind::Upright(i, down) => {
+                let [a, c] = [i, (i + 2) % 3].map(|k| self.t[usize::from(k)].truncate());
+                turn(a, c, p.truncate()) * down
+            }
+            Kind::Leaning => {
+                let [a, b, c, p] =
+                    [self.t[0], self.t[1], self.t[2], p].map(|v| Coord3D { x: v.x, y: v.y, z: v.z });
+                orient3d(a, b, c, p)
+            }
+        }
     }
-    // The line goes round all three sides the same way.
-    let [a, b, c] = t;
-    let turns = [side([p, q, a], b), side([p, q, b], c), side([p, q, c], a)];
-    turns.iter().all(|&x| x >= 0.0) || turns.iter().all(|&x| x <= 0.0)
+
+    /// The axis along which it is seen widest.
+    fn flat_axis(&self) -> usize {
+        let [a, b, c] = self.t;
+        let normal = (b - a).cross(c - a).abs().to_array();
+        (0..3).max_by(|&i, &j| normal[i].total_cmp(&normal[j])).expect("there are three axes")
+    }
 }
 
 /// Whether a closed segment meets a closed triangle in the plane. Exact.
@@ -139,24 +213,7 @@ fn cross_flat(p: DVec2, q: DVec2, a: DVec2, b: DVec2) -> bool {
     !apart(pa, pb) && !apart(ap, aq)
 }
 
-/// The side of the plane of `t` on which `p` lies; only the sign counts, and it is exact.
-fn side(t: [DVec3; 3], p: DVec3) -> f64 {
-    if t.iter().all(|v| v.z == t[0].z) {
-        // Caps are level and walls upright: the predicate would go to its last resort for each point in their plane.
-        let [a, b, c] = t.map(DVec3::truncate);
-        return sign(turn(a, b, c)) * (t[0].z - p.z);
-    }
-    for i in 0..3 {
-        let (a, b, c) = (t[i], t[(i + 1) % 3], t[(i + 2) % 3]);
-        if a.truncate() == b.truncate() {
-            return turn(a.truncate(), c.truncate(), p.truncate()) * sign(a.z - b.z);
-        }
-    }
-    let coord = |v: DVec3| Coord3D { x: v.x, y: v.y, z: v.z };
-    orient3d(coord(t[0]), coord(t[1]), coord(t[2]), coord(p))
-}
-
-/// −1, 0 or 1; a corner given twice has no plane, and no side of it.
+/// −1, 0 or 1.
 fn sign(x: f64) -> f64 {
     if x == 0.0 { 0.0 } else { x.signum() }
 }
@@ -164,12 +221,6 @@ fn sign(x: f64) -> f64 {
 fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     let coord = |v: DVec2| Coord { x: v.x, y: v.y };
     orient2d(coord(a), coord(b), coord(c))
-}
-
-/// The axis along which `t` is seen widest.
-fn flat_axis(t: [DVec3; 3]) -> usize {
-    let normal = (t[1] - t[0]).cross(t[2] - t[0]).abs().to_array();
-    (0..3).max_by(|&i, &j| normal[i].total_cmp(&normal[j])).expect("there are three axes")
 }
 
 /// `p` seen along an axis.
@@ -240,7 +291,7 @@ mod tests {
     proptest! {
         /// Against a search in small whole numbers, where many things line up.
         #[test]
-        fn pierces_agrees_with_exact_arithmetic(v in prop::array::uniform5(prop::array::uniform3(-3i64..4))) {
+        fn piercing_agrees_with_exact_arithmetic(v in prop::array::uniform5(prop::array::uniform3(-3i64..4))) {
             let [p, q, a, b, c] = v;
             let minus = |u: [i64; 3], w: [i64; 3]| [u[0] - w[0], u[1] - w[1], u[2] - w[2]];
             let cross = |u: [i64; 3], w: [i64; 3]| {
@@ -259,7 +310,8 @@ mod tests {
             });
             let expected = within && hp * hq <= 0;
             let point = |v: [i64; 3]| DVec3::from_array(v.map(|x| x as f64));
-            prop_assert_eq!(pierces(point(p), point(q), [a, b, c].map(point)), expected);
+            let t = [a, b, c].map(point);
+            prop_assert_eq!(Triangle { t, kind: Kind::of(t) }.is_pierced(point(p), point(q)), expected);
         }
     }
 }

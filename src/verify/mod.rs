@@ -15,6 +15,7 @@
 //! so; what can be judged but is not in order is a fault in the report.
 
 mod ascent;
+mod boxes;
 mod certificate;
 mod check;
 mod clearance;

@@ -85,6 +85,9 @@ pub struct NarrowPlaces {
 }
 
 impl NarrowPlaces {
+    /// So many of the worst places are reported, of ink and of gaps.
+    pub const WORST: usize = 10;
+
     /// The middle and the width of each, ink first, in millimetres.
     pub fn places_mm(&self) -> Vec<(DVec2, f64)> {
         self.ink.iter().chain(&self.gaps).map(|place| (place.position_mm, place.width_mm)).collect()

@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::drawing::{Drawing, Shape};
 use super::error::VerifyError;
-use super::narrowest::{Narrowest, widths};
+use super::narrowest::{NarrowPlaces, Narrowest, narrow_places};
 use super::{drawn, plain};
 use crate::planar::{Contour, Fault, Grid, Region, RegionError};
 
@@ -48,6 +48,9 @@ pub struct SvgReport {
     pub faults: Vec<SvgFault>,
     /// The greatest distance between the file's curves and the polygons that were counted.
     pub chord_mm: f64,
+    /// The ten narrowest places of ink and of gaps.
+    #[serde(skip)]
+    pub narrow_places: NarrowPlaces,
     /// The ink.
     #[serde(skip)]
     pub region: Region,
@@ -210,7 +213,7 @@ fn count(drawing: &Drawing, chord_mm: f64) -> Result<SvgReport, VerifyError> {
     }
     faults.extend(contour_faults(&region, contours).into_iter().map(SvgFault::from));
     faults.extend(beyond_page(&region, drawing.page_mm, chord_mm));
-    let widths = widths(&region, chord_mm);
+    let narrow_places = narrow_places(&region, NarrowPlaces::WORST, f64::INFINITY, chord_mm);
     Ok(SvgReport {
         components: region.components(),
         holes: region.holes(),
@@ -218,10 +221,11 @@ fn count(drawing: &Drawing, chord_mm: f64) -> Result<SvgReport, VerifyError> {
         bounds_mm: region.bounds_mm(),
         page_mm: drawing.page_mm,
         vertices: region.vertices(),
-        min_feature: widths.feature,
-        min_gap: widths.gap,
+        min_feature: narrow_places.ink.first().copied(),
+        min_gap: narrow_places.gaps.first().copied(),
         faults,
         chord_mm,
+        narrow_places,
         region,
     })
 }
