@@ -150,8 +150,8 @@ fn a_drawing_is_engraved_in_the_colours_of_the_process() {
     assert!(
         dxf.contains("2\nCUT\n70\n0\n62\n5\n420\n240\n") && dxf.contains("2\nENGRAVE\n70\n0\n62\n3\n6\n")
     );
-    // The plate's first corner on its page is at (5, 35); engraving moves with it to the middle of the sheet.
-    assert!(svg.contains("M32 37L32 23"), "{svg}");
+    // The plate moves by (25, 15) to the middle of the sheet, and what is engraved moves with it.
+    assert!(svg.contains("M32 37L37 37"), "{svg}");
 
     room.draw("wide.svg", "<rect x='7' y='8' width='10' height='4'/>");
     let wide = mine.replace("name.svg", "wide.svg");

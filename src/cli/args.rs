@@ -68,7 +68,7 @@ Examples:
   A border to be cut by a laser, and a sign from whose plate nothing falls out:
     openwork band scroll.svg --along line:240mm --components 1 --kerf 0.15mm -o border.dxf
     openwork band scroll.svg --along line:240mm --holes 0 --bridge 1mm --sheet 300x100mm --carve -o sign.dxf -o sign.png
-  Twelve different bands of the same ornament:
+  Twelve different bands of the same ornament, and vine-sheet.png to choose from:
     openwork band vine.svg --along line:120mm --components 1 --count 12 --seed 7 -o vine.svg
 
 Exit codes: 0 done; 2 the input or an argument is wrong; 3 the constraints cannot be met;
