@@ -137,7 +137,8 @@ mod tests {
     fn columns_make_a_page() {
         let columns = |x: f64, y: f64, count: usize| Grid::new(DVec2::new(x, y), count).columns;
         assert_eq!(columns(80.0, 80.0, 12), 4);
-        assert_eq!(columns(240.0, 16.0, 12), 1);
+        assert_eq!(columns(240.0, 16.0, 12), 2);
+        assert_eq!(columns(480.0, 16.0, 12), 1);
         assert_eq!(columns(120.0, 16.0, 12), 2);
         assert_eq!(columns(10.0, 200.0, 12), 12);
         assert_eq!(columns(50.0, 50.0, 1), 1);
@@ -170,18 +171,24 @@ mod tests {
         // Half as wide and half as high, in the middle of its cell.
         assert_eq!([at(1, 16.0, 11.0), at(1, 44.0, 29.0)], [INK; 2]);
         assert_eq!([at(1, 14.0, 20.0), at(1, 30.0, 9.0), at(1, 46.0, 20.0)], [PAPER; 3]);
-        let digits = seen.count(INK) as f64 - scale * scale * (2.0 * 2400.0 + 600.0);
-        assert!(digits > 0.2 * (grid.digit_mm * scale).powi(2), "the numbers are drawn: {digits}");
+        for place in 0..3 {
+            // The box of two digits, above the upper left corner of the cell.
+            let part = |i: u32| f64::from(i) / 40.0 * grid.digit_mm;
+            let mut spots = (0..64).flat_map(|i| (0..40).map(move |j| (part(i), part(j))));
+            let is_drawn = spots.any(|(x, y)| at(place, x, -UNDER * grid.digit_mm - y) != PAPER);
+            assert!(is_drawn, "the number of band {place} is missing");
+        }
     }
 
     #[test]
     fn digits_stay_in_their_boxes_and_differ() {
         let all: Vec<Vec<DVec2>> = ('0'..='9').map(|digit| stroke(digit).collect()).collect();
         for (i, corners) in all.iter().enumerate() {
-            let (low, high) = (corners[0], DVec2::new(4.0, 6.0));
+            let high = DVec2::new(4.0, 6.0);
             let is_inside = |p: &DVec2| p.cmpge(DVec2::ZERO).all() && p.cmple(high).all();
             assert!(corners.iter().all(is_inside), "{i}");
-            assert!(corners.iter().any(|p| p.distance(low) > 5.0), "{i} is as high as the others");
+            let reaches = |y: f64| corners.iter().any(|p| p.y == y);
+            assert!(reaches(0.0) && reaches(6.0), "{i} is not as high as the others");
             assert!(!all[..i].contains(corners), "{i}");
         }
         assert_eq!(stroke('x').count(), 0);
