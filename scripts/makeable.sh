@@ -60,7 +60,7 @@ sliced() { # FILE: whether it becomes G-code
   if "$slicer" --export-gcode $options --output "$1.gcode" "$1" > "$1.slicer.log" 2>&1 && [ -s "$1.gcode" ]; then
     echo "sliced"
   else
-    echo "**slicer: $(tail -n 1 "$1.slicer.log" | cut -c 1-110)**"
+    echo "**slicer: $(grep -E '^(There is|The print|error)' "$1.slicer.log" | tail -n 1 | cut -c 1-110)**"
   fi
 }
 
@@ -170,7 +170,11 @@ Commands: \`COUNTER=... PYTHON=... scripts/makeable.sh OUT_DIR fixtures/exemplar
 the rest, of which only lines are here. Names with a number are ornaments of TeX packages under the LPPL (pgfornament,
 pgfornament-han, niceframe), not kept in this repository; the others are in \`fixtures/exemplars\`.
 
-$(grep -c . <<< "$rows") parts, $(grep -c '| refused' <<< "$rows" || true) with something that was refused, $(grep -c '\*\*' <<< "$rows" || true) with a failure (bold).$absent
+$(grep -c . <<< "$rows") parts, $(grep -c '| refused' <<< "$rows" || true) with something that was refused, $(grep -c '\*\*' <<< "$rows" || true) with something that another program found
+(bold). None of it is about components or holes: *the print is empty*, and *no extrusions in the first layer* of an object,
+where all ink of a drawing or of a part is thinner than a nozzle of 0.4 mm, which \`--process fdm-0.4 --enforce\` is for; *an area
+below 0.01* mm² is how small some parts of a drawing are; *contours cross or touch themselves* where a contour is of arcs only,
+and the last one, computed from its bulge, ends 1e-14 mm or less beside the first.$absent
 
 | exemplar | where | components, holes | STL | 3MF | DXF R2000 | DXF R12 | cut SVG, kerf | sign, DXF |
 |---|---|---|---|---|---|---|---|---|
