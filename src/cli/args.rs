@@ -235,17 +235,7 @@ pub(super) struct PatternArguments {
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(super) bridge: Option<f64>,
     #[command(flatten)]
-    pub(super) print: PrintArgs,
-    #[command(flatten)]
-    pub(super) tolerances: ToleranceArguments,
-    #[command(flatten)]
-    pub(super) laser: LaserArgs,
-    #[command(flatten)]
-    pub(super) make: MakeArgs,
-    #[command(flatten)]
-    pub(super) picture: PictureArgs,
-    #[command(flatten)]
-    pub(super) preset: PresetArgs,
+    pub(super) part: PartArguments,
     /// A file to write: .svg, .dxf, .stl, .3mf, .obj or .png; may be repeated; - is SVG on standard output
     #[arg(short, long, value_name = "FILE", required = true)]
     pub(super) output: Vec<PathBuf>,
@@ -255,6 +245,23 @@ pub(super) struct PatternArguments {
     /// Say nothing but errors
     #[arg(short, long)]
     pub(super) quiet: bool,
+}
+
+/// What every command that makes a part has.
+#[derive(Debug, Args)]
+pub(super) struct PartArguments {
+    #[command(flatten)]
+    pub(super) tolerances: ToleranceArguments,
+    #[command(flatten)]
+    pub(super) print: PrintArgs,
+    #[command(flatten)]
+    pub(super) laser: LaserArgs,
+    #[command(flatten)]
+    pub(super) make: MakeArgs,
+    #[command(flatten)]
+    pub(super) picture: PictureArgs,
+    #[command(flatten)]
+    pub(super) preset: PresetArgs,
 }
 
 #[derive(Debug, Clone, Args)]
@@ -313,17 +320,7 @@ pub(super) struct ExtrudeArguments {
     #[arg(long, value_name = "M", value_parser = values::wanted, requires = "bridge", allow_negative_numbers = true)]
     pub(super) holes: Option<values::Count>,
     #[command(flatten)]
-    pub(super) tolerances: ToleranceArguments,
-    #[command(flatten)]
-    pub(super) print: PrintArgs,
-    #[command(flatten)]
-    pub(super) laser: LaserArgs,
-    #[command(flatten)]
-    pub(super) make: MakeArgs,
-    #[command(flatten)]
-    pub(super) picture: PictureArgs,
-    #[command(flatten)]
-    pub(super) preset: PresetArgs,
+    pub(super) part: PartArguments,
     /// A file to write: .stl, .3mf, .obj, .svg (the outline, with its bridges), .dxf or .png; may be repeated; - is STL on
     /// standard output
     #[arg(short, long, value_name = "FILE", required = true)]

@@ -13,15 +13,15 @@ pub(super) fn run(arguments: &ExtrudeArguments) -> Result<ExitCode, CliError> {
     let outputs: Vec<Output> =
         arguments.output.iter().map(|path| output(path, Format::Stl)).collect::<Result<_, _>>()?;
     refuse_json_beside(arguments.json, &outputs)?;
-    let made = arguments.make.made(&arguments.tolerances)?;
+    let made = arguments.part.make.made(&arguments.part.tolerances)?;
     let making = ExtrudeMaking {
         thickness_mm: made.thickness_mm,
         tolerances: Tolerances::new(made.chord_mm, made.min_feature_mm, made.min_gap_mm)?,
-        enforce: arguments.make.enforce,
-        laser: arguments.laser.options(&made, &arguments.output),
+        enforce: arguments.part.make.enforce,
+        laser: arguments.part.laser.options(&made, &arguments.output),
         material: made.material,
-        print: arguments.print.options(),
-        picture: arguments.picture.options(),
+        print: arguments.part.print.options(),
+        picture: arguments.part.picture.options(),
     };
     let bridges = arguments.bridge.map(|width_mm| ExtrudeBridges {
         width_mm,

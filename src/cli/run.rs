@@ -207,7 +207,7 @@ fn builder(arguments: &BandArguments) -> Result<BandBuilder, CliError> {
 
 /// The options that a band and a rectangle share.
 pub(super) fn with_pattern(builder: BandBuilder, a: &PatternArguments) -> Result<BandBuilder, CliError> {
-    let made = a.make.made(&a.tolerances)?;
+    let made = a.part.make.made(&a.part.tolerances)?;
     let mut builder = builder
         .slicing(a.slicing)
         .mirror(a.mirror)
@@ -220,10 +220,10 @@ pub(super) fn with_pattern(builder: BandBuilder, a: &PatternArguments) -> Result
         .chord_mm(made.chord_mm)
         .min_feature_mm(made.min_feature_mm)
         .min_gap_mm(made.min_gap_mm)
-        .enforce(a.make.enforce)
-        .laser(a.laser.options(&made, &a.output))
-        .picture(a.picture.options())
-        .print(a.print.options());
+        .enforce(a.part.make.enforce)
+        .laser(a.part.laser.options(&made, &a.output))
+        .picture(a.part.picture.options())
+        .print(a.part.print.options());
     if let Some(material) = made.material {
         builder = builder.material(material);
     }

@@ -103,14 +103,7 @@ impl Fit<'_> {
 
     /// The vertex as the file has it.
     fn joint(&self, i: usize) -> DVec2 {
-        if i == 0 {
-            self.from
-        } else if i + 1 == self.run.points.len() {
-            self.to
-        } else {
-            let tolerance = self.run.tolerances[i - 1].min(self.run.tolerances[i]);
-            self.rounding.round(self.run.points[i], tolerance)
-        }
+        self.rounding.vertex(self.run, i, [self.from, self.to])
     }
 
     /// The unit tangent of the run at a vertex.

@@ -166,6 +166,15 @@ fn paint([r, g, b]: [u8; 3]) -> Paint<'static> {
     paint
 }
 
+/// A frame of 80 by 40 mm around a hole of 60 by 20 mm, 10 mm from both axes.
+#[cfg(test)]
+pub(super) fn frame() -> Region {
+    use crate::planar::{Grid, boxes};
+
+    let step = Grid::for_extent(100.0).unwrap().steps(1.0);
+    boxes(step, FillRule::EvenOdd, &[(10, 10, 80, 40), (20, 20, 60, 20)])
+}
+
 /// A PNG read again, for tests.
 #[cfg(test)]
 pub(super) struct Seen(Pixmap);

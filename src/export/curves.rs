@@ -35,6 +35,17 @@ pub(super) struct Rounding {
 }
 
 impl Rounding {
+    /// Vertex `i` of a run as the file has it: one of its `ends`, which its neighbours share, or rounded.
+    pub(super) fn vertex(self, run: &Run, i: usize, [from, to]: [DVec2; 2]) -> DVec2 {
+        if i == 0 {
+            from
+        } else if i + 1 == run.points.len() {
+            to
+        } else {
+            self.round(run.points[i], run.tolerances[i - 1].min(run.tolerances[i]))
+        }
+    }
+
     /// The rounding of points of a grid.
     pub(super) fn on(grid: Grid) -> Self {
         Self { exact: (-grid.step_mm().log10()).ceil() as i32 }
@@ -139,14 +150,7 @@ impl Fit<'_> {
 
     /// The vertex as the file has it.
     fn joint(&self, i: usize) -> DVec2 {
-        if i == 0 {
-            self.from
-        } else if i + 1 == self.run.points.len() {
-            self.to
-        } else {
-            let tolerance = self.run.tolerances[i - 1].min(self.run.tolerances[i]);
-            self.rounding.round(self.run.points[i], tolerance)
-        }
+        self.rounding.vertex(self.run, i, [self.from, self.to])
     }
 
     /// One cubic, or the inner vertex at which to split.

@@ -60,21 +60,9 @@ pub fn png(region: &Region, marks: &Marks<'_>, longer_side: u32) -> Result<Vec<u
 
 #[cfg(test)]
 mod tests {
-    use super::super::canvas::{PAPER, Seen};
+    use super::super::canvas::{PAPER, Seen, frame};
     use super::*;
-    use crate::planar::{Grid, GridPoint};
-
-    fn frame() -> Region {
-        let grid = Grid::for_extent(100.0).unwrap();
-        let one = grid.steps(1.0);
-        let rectangle = |x: i64, y: i64, w: i64, h: i64| {
-            [(x, y), (x + w, y), (x + w, y + h), (x, y + h)]
-                .map(|(x, y)| GridPoint::new(x * one, y * one))
-                .to_vec()
-        };
-        let paths = [rectangle(10, 10, 80, 40), rectangle(20, 20, 60, 20)];
-        Region::fill(grid, &paths, crate::planar::FillRule::EvenOdd)
-    }
+    use crate::planar::Grid;
 
     #[test]
     fn ink_is_dark_and_holes_are_paper() {

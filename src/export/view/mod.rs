@@ -196,24 +196,16 @@ fn encoded(light: f32) -> u8 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::canvas::frame;
     use super::*;
     use crate::fabricate::extrude;
-    use crate::planar::{FillRule, Grid, GridPoint, Region};
 
-    fn frame() -> Solid {
-        let grid = Grid::for_extent(100.0).unwrap();
-        let one = grid.steps(1.0);
-        let rectangle = |x: i64, y: i64, w: i64, h: i64| {
-            [(x, y), (x + w, y), (x + w, y + h), (x, y + h)]
-                .map(|(x, y)| GridPoint::new(x * one, y * one))
-                .to_vec()
-        };
-        let paths = [rectangle(10, 10, 80, 40), rectangle(20, 20, 60, 20)];
-        extrude(&Region::fill(grid, &paths, FillRule::EvenOdd), 5.0).unwrap()
+    fn solid_frame() -> Solid {
+        extrude(&frame(), 5.0).unwrap()
     }
 
     fn picture(view: View) -> Pixmap {
-        let solid = frame();
+        let solid = solid_frame();
         let bytes = view_png(&[Painted { solid: &solid, colour: DEFAULT_COLOUR }], view, 220).unwrap();
         assert_eq!(bytes, view_png(&[Painted { solid: &solid, colour: DEFAULT_COLOUR }], view, 220).unwrap());
         Pixmap::decode_png(&bytes).unwrap()
@@ -249,7 +241,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_drawn_is_an_error() {
-        let solid = frame();
+        let solid = solid_frame();
         let part = Painted { solid: &solid, colour: DEFAULT_COLOUR };
         assert!(matches!(view_png(&[part], View::Iso, 3), Err(ExportError::Option { .. })));
         assert!(matches!(view_png(&[], View::Iso, 100), Err(ExportError::Empty)));
