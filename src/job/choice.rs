@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::plan::{Plan, PlanError, PlanOptions, finish, first_fit, problem_of, why};
+use super::plan::{Plan, PlanError, PlanOptions, Prospect, finish, first_fit, problem_of, why};
 use crate::pieces::Catalogue;
 use crate::solver::{self, Census, Random, Solution, Tally, Unsolved, canonical};
 use crate::topology::Shape;
@@ -61,7 +61,8 @@ pub fn choose(
     choice: Choice,
     counted: bool,
 ) -> Result<Chosen, PlanError> {
-    chosen(catalogue, options, choice, counted).map_err(|error| why(catalogue, options, error))
+    chosen(catalogue, options, choice, counted, Prospect::OPEN)
+        .map_err(|error| why(catalogue, options, error))
 }
 
 /// The same, without a reason where there is none.
@@ -70,8 +71,9 @@ pub(super) fn chosen(
     options: &PlanOptions,
     choice: Choice,
     counted: bool,
+    prospect: Prospect<'_>,
 ) -> Result<Chosen, Unsolved> {
-    let cheapest = first_fit(catalogue, options)?;
+    let cheapest = first_fit(catalogue, options, prospect)?;
     let problem = problem_of(catalogue, options, cheapest.epsilon);
     let effort = if choice == Choice::Cheapest { COUNTING_EFFORT } else { LONG_COUNTING_EFFORT };
     let count = || solver::tally(&problem, options.goal, Some(&cheapest.sequence), effort);
@@ -138,7 +140,8 @@ fn perturbed(
         if plans.len() == count {
             break;
         }
-        let found = first_fit(catalogue, &PlanOptions { seed: Some(random.bits()), ..*options })?;
+        let options = PlanOptions { seed: Some(random.bits()), ..*options };
+        let found = first_fit(catalogue, &options, Prospect::OPEN)?;
         if seen.insert(canonical(&found.sequence, options.shape)) {
             plans.push(found);
         }

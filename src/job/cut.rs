@@ -36,19 +36,26 @@ impl Cut {
 
     /// Makes the catalogue again, after cuts were left out or weights were changed.
     pub(super) fn weigh(&mut self, own_ends_only: bool) {
-        let catalogue = catalogue(&self.region, &self.slicing, &self.weights, self.mirror);
-        self.catalogue = if own_ends_only { catalogue.with_own_ends_only() } else { catalogue };
+        self.catalogue = self.weighed(&self.weights, own_ends_only);
     }
 
-    /// Weighs every join instead of the cheapest few; `false` if that changes nothing.
-    pub(super) fn admit_all_successors(&mut self) -> bool {
-        let pieces = self.catalogue.originals();
-        if self.weights.successors >= pieces {
-            return false;
-        }
-        self.weights.successors = pieces;
-        self.weigh(self.catalogue.has_own_ends_only());
-        true
+    /// The catalogue with every join instead of the cheapest few; `None` if these are all.
+    pub(super) fn with_all_successors(&self) -> Option<Catalogue> {
+        let successors = self.catalogue.originals();
+        let weights = CostWeights { successors, ..self.weights };
+        (self.weights.successors < successors)
+            .then(|| self.weighed(&weights, self.catalogue.has_own_ends_only()))
+    }
+
+    /// Takes the catalogue with every join for the one with the cheapest few.
+    pub(super) fn admit(&mut self, with_all_successors: Catalogue) {
+        self.weights.successors = with_all_successors.originals();
+        self.catalogue = with_all_successors;
+    }
+
+    fn weighed(&self, weights: &CostWeights, own_ends_only: bool) -> Catalogue {
+        let catalogue = catalogue(&self.region, &self.slicing, weights, self.mirror);
+        if own_ends_only { catalogue.with_own_ends_only() } else { catalogue }
     }
 }
 

@@ -90,7 +90,7 @@ pub const DEFAULT_MEMORY_LIMIT: usize = 2 << 30;
 /// # Errors
 /// [`PlanError`] when the constraints cannot be met or the search is too large.
 pub fn plan(catalogue: &Catalogue, options: &PlanOptions) -> Result<Plan, PlanError> {
-    first_fit(catalogue, options).map_err(|error| why(catalogue, options, error))
+    first_fit(catalogue, options, Prospect::OPEN).map_err(|error| why(catalogue, options, error))
 }
 
 /// Why there is no sequence, when [`first_fit`] found none.
@@ -110,7 +110,7 @@ pub(super) fn why(catalogue: &Catalogue, options: &PlanOptions, error: Unsolved)
     PlanError::Refused { refusal: solver::explain(&problem, options.goal, longest), bin_mm }
 }
 
-/// Whether there is no sequence for any ε, as far as that is found out soon.
+/// Whether no sequence of `catalogue` meets the goal for any ε, as far as that is found out soon.
 pub(super) fn is_impossible(catalogue: &Catalogue, options: &PlanOptions) -> bool {
     let bin_mm = bin_mm(catalogue, options.length_mm);
     let [.., last] = EPSILONS;
@@ -119,33 +119,54 @@ pub(super) fn is_impossible(catalogue: &Catalogue, options: &PlanOptions) -> boo
     })
 }
 
+/// What is thought of a search before it.
+#[derive(Clone, Copy)]
+pub(super) enum Prospect<'a> {
+    /// Nothing speaks against it. Whether there is no sequence for any ε is asked once that is not plain.
+    Good(&'a dyn Fn() -> bool),
+    /// A part of what may be joined was not enough, so there is likely none.
+    Poor,
+}
+
+impl Prospect<'_> {
+    /// Nothing speaks against it, and nothing can tell.
+    pub(super) const OPEN: Self = Self::Good(&|| false);
+}
+
 /// The best sequence for the least ε with which there is one.
-pub(super) fn first_fit(catalogue: &Catalogue, options: &PlanOptions) -> Result<Plan, Unsolved> {
+pub(super) fn first_fit(
+    catalogue: &Catalogue,
+    options: &PlanOptions,
+    prospect: Prospect<'_>,
+) -> Result<Plan, Unsolved> {
     let bin_mm = bin_mm(catalogue, options.length_mm);
     let mut problem = problem(catalogue, options, bin_mm);
+    let is_none = match prospect {
+        Prospect::Good(is_none) => is_none,
+        Prospect::Poor => &|| false,
+    };
     let mut within = |epsilon: f64| {
         // No whole number of bins may lie so close to a short length.
         problem.window = window(options.length_mm, epsilon, bin_mm).ok_or(Unsolved::Infeasible)?;
-        solver::solve(&problem, options.goal).map(|solution| (solution, epsilon))
+        solver::solve_unless(&problem, options.goal, is_none).map(|solution| (solution, epsilon))
     };
-    let [first, between @ .., last] = EPSILONS;
-    let found = within(first).or_else(|error| {
+    let [first, .., last] = EPSILONS;
+    let mut narrower = &EPSILONS[..EPSILONS.len() - 1];
+    let mut found = Err(Unsolved::Infeasible);
+    if let Prospect::Good(_) = prospect {
+        found = within(first);
+        narrower = &narrower[1..];
+    }
+    if found == Err(Unsolved::Infeasible) && !is_none() {
         // What cannot be had within the last cannot be had within any, so that refusals come soon.
-        let widest = match error {
-            Unsolved::Infeasible => within(last),
-            Unsolved::TooLarge { .. } => return Err(error),
-        };
-        if widest == Err(Unsolved::Infeasible) {
-            return widest;
-        }
-        for epsilon in between {
-            match within(epsilon) {
-                Err(Unsolved::Infeasible) => {}
-                found => return found,
+        found = match within(last) {
+            Err(Unsolved::Infeasible) => Err(Unsolved::Infeasible),
+            widest => {
+                let mut closer = narrower.iter().map(|&epsilon| within(epsilon));
+                closer.find(|found| *found != Err(Unsolved::Infeasible)).unwrap_or(widest)
             }
-        }
-        widest
-    });
+        };
+    }
     found.map(|(solution, epsilon)| finish(catalogue, options, solution, epsilon))
 }
 

@@ -1,10 +1,12 @@
 //! From a sliced exemplar to a sequence that meets the goal of a job by itself.
 
+use std::cell::OnceCell;
+
 use super::builder::BandJob;
 use super::choice::{Choice, Chosen, chosen};
 use super::cut::Cut;
 use super::error::JobError;
-use super::plan::{Plan, PlanError, PlanOptions, first_fit, is_impossible, why};
+use super::plan::{Plan, PlanError, PlanOptions, Prospect, first_fit, is_impossible, why};
 use super::refusal;
 use super::stage::{Clock, Stage};
 use crate::domain::BandMap;
@@ -51,7 +53,7 @@ pub(super) fn plan_way(
     clock: &mut Clock<'_>,
 ) -> Option<(Plan, Topology)> {
     let options = plan_options(job, cut, map);
-    let plan = clock.time(Stage::Solve, || first_fit(&cut.catalogue, &options)).ok()?;
+    let plan = clock.time(Stage::Solve, || first_fit(&cut.catalogue, &options, Prospect::OPEN)).ok()?;
     Some(with_topology(cut, &options, plan))
 }
 
@@ -81,21 +83,31 @@ pub(super) fn strictly(
 }
 
 /// The same, without a reason where there is none.
-fn with_any_successors(
+pub(super) fn with_any_successors(
     options: &PlanOptions,
     choice: Choice,
     counted: bool,
     cut: &mut Cut,
     clock: &mut Clock<'_>,
 ) -> Result<Chosen, Unsolved> {
-    let found = clock.time(Stage::Solve, || chosen(&cut.catalogue, options, choice, counted));
-    if found != Err(Unsolved::Infeasible) || !cut.admit_all_successors() {
+    let all = OnceCell::new();
+    let all_joins = || all.get_or_init(|| cut.with_all_successors());
+    // What cannot be had with all joins cannot be had with the cheapest few.
+    let none = OnceCell::new();
+    let is_none =
+        || *none.get_or_init(|| is_impossible(all_joins().as_ref().unwrap_or(&cut.catalogue), options));
+    let found = clock
+        .time(Stage::Solve, || chosen(&cut.catalogue, options, choice, counted, Prospect::Good(&is_none)));
+    if found != Err(Unsolved::Infeasible) {
         return found;
     }
-    clock.time(Stage::Solve, || match is_impossible(&cut.catalogue, options) {
-        true => Err(Unsolved::Infeasible),
-        false => chosen(&cut.catalogue, options, choice, counted),
-    })
+    let is_none = is_none();
+    let Some(all) = all.into_inner().flatten() else { return found };
+    cut.admit(all);
+    if is_none {
+        return found;
+    }
+    clock.time(Stage::Solve, || chosen(&cut.catalogue, options, choice, counted, Prospect::Poor))
 }
 
 pub(super) fn with_topology(cut: &Cut, options: &PlanOptions, plan: Plan) -> (Plan, Topology) {

@@ -5,6 +5,9 @@
 //! planned and their costs compared, with a price on each bridge. The dearer ones are kept for when the cheaper one
 //! turns out to have no place for its bridges. Excluded: laying them ([`crate::fabricate::bridge`]).
 
+use std::panic::resume_unwind;
+use std::thread;
+
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -13,12 +16,12 @@ use super::builder::BandJob;
 use super::choice::{Choice, Chosen, choose};
 use super::cut::Cut;
 use super::error::JobError;
-use super::plan::{Plan, PlanError, PlanOptions, first_fit};
-use super::planning::{plan_options, refused, strictly, with_topology};
+use super::plan::{Plan, PlanError, PlanOptions, Prospect, first_fit, why};
+use super::planning::{plan_options, refused, strictly, with_any_successors, with_topology};
 use super::stage::{Clock, Stage};
 use crate::domain::BandMap;
 use crate::pieces::CostWeights;
-use crate::solver::Tally;
+use crate::solver::{Tally, Unsolved};
 use crate::topology::{Goal, Topology, Wanted};
 
 /// The memory of a search for what bridges could do, in bytes, when they were not asked for.
@@ -85,29 +88,35 @@ pub(super) fn ways(
     {
         return bridged_ways(job, &options, cut, clock);
     }
-    match strictly(&options, job.options.choice, job.options.counted, cut, clock) {
+    let found = with_any_successors(&options, job.options.choice, job.options.counted, cut, clock);
+    match found {
         Ok(chosen) => {
             let planned = with_topology(cut, &options, chosen.plans[0].clone()).1;
             let goal = options.goal;
             Ok(vec![Way { goal, chosen, is_first_only: false, planned, bridges: 0, total_cost: 0.0 }])
         }
         Err(error) => {
-            let hint = hint(&error, &options, cut, clock);
+            let (error, hint) = clock.time(Stage::Solve, || why_with_hint(&options, cut, error));
             Err(refused(error, cut, &options, &hint))
         }
     }
 }
 
-/// What bridges would do where there is no plan. Looking for that must not take longer than the refusal itself.
-fn hint(error: &PlanError, options: &PlanOptions, cut: &Cut, clock: &mut Clock<'_>) -> String {
-    if !matches!(error, PlanError::Refused { .. }) || !bridging::can_help(error) {
-        return String::new();
+/// Why there is no plan, and what bridges would do. Both are looked for at once, as a refusal should come soon.
+fn why_with_hint(options: &PlanOptions, cut: &Cut, error: Unsolved) -> (PlanError, String) {
+    if error != Unsolved::Infeasible {
+        return (why(&cut.catalogue, options, error), String::new());
     }
-    let best = |clock: &mut Clock<'_>| {
-        relaxed(options.goal).into_iter().find_map(|goal| plan_for(options, goal, HINT_BYTES, cut, clock))
-    };
-    best(clock)
-        .map_or_else(String::new, |plan| bridging::hint(options.goal, with_topology(cut, options, plan).1))
+    let (error, best) = thread::scope(|scope| {
+        let best = scope.spawn(|| {
+            relaxed(options.goal).into_iter().find_map(|goal| plan_for(options, goal, HINT_BYTES, cut))
+        });
+        (why(&cut.catalogue, options, error), best.join().unwrap_or_else(|panic| resume_unwind(panic)))
+    });
+    let best = best.filter(|_| bridging::can_help(&error));
+    let hint = |plan| bridging::hint(options.goal, with_topology(cut, options, plan).1);
+    let hint = best.map_or_else(String::new, hint);
+    (error, hint)
 }
 
 /// What is left of a goal for bridges to do the rest: the components rather than the holes, as slits across strands
@@ -120,15 +129,9 @@ fn relaxed(goal: Goal) -> Vec<Goal> {
     goals
 }
 
-fn plan_for(
-    options: &PlanOptions,
-    goal: Goal,
-    memory_limit: usize,
-    cut: &Cut,
-    clock: &mut Clock<'_>,
-) -> Option<Plan> {
+fn plan_for(options: &PlanOptions, goal: Goal, memory_limit: usize, cut: &Cut) -> Option<Plan> {
     let options = PlanOptions { goal, memory_limit, ..*options };
-    clock.time(Stage::Solve, || first_fit(&cut.catalogue, &options)).ok()
+    first_fit(&cut.catalogue, &options, Prospect::OPEN).ok()
 }
 
 fn bridged_ways(
@@ -161,7 +164,9 @@ fn bridged_ways(
     let relaxed = relaxed(goal);
     let (&free, parts) = relaxed.split_last().expect("a goal can be left to bridges altogether");
     let memory_limit = options.memory_limit / RELAXED_PART;
-    let least = plan_for(options, free, memory_limit, cut, clock).map(|plan| way(free, plan, cut));
+    let least = clock
+        .time(Stage::Solve, || plan_for(options, free, memory_limit, cut))
+        .map(|plan| way(free, plan, cut));
     if let Some(least) = least {
         // Nothing costs less than what is free, and what is held to a part of the goal needs a bridge too.
         let bound = least.chosen.plans[0].cost + price;
@@ -169,7 +174,7 @@ fn bridged_ways(
         for &part in parts {
             // What meets a part of the goal though it is free is the best of those that are held to it.
             if !is_beaten(&ways) && least.total_cost > bound && !part.admits(least.planned) {
-                let plan = plan_for(options, part, memory_limit, cut, clock);
+                let plan = clock.time(Stage::Solve, || plan_for(options, part, memory_limit, cut));
                 add(&mut ways, plan.map(|plan| way(part, plan, cut)));
             }
         }

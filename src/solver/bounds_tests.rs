@@ -284,7 +284,7 @@ impl<'a> Case<'a> {
         let can_be = met().any(|topology| goal.admits(topology));
         let mut automaton = Automaton::new(problem.descriptors, goal, problem.shape);
         let (never, out_of_range) =
-            (is_never(problem, &mut automaton, scope), is_out_of_range(problem, goal, scope, None));
+            (is_never(problem, &mut automaton, scope), is_out_of_range(problem, goal, scope));
         prop_assert!(!(can_be && never), "{goal:?} is possible");
         prop_assert!(!(can_be && out_of_range), "{goal:?} is in range");
         let is_open = problem.shape == Shape::Open;
@@ -301,12 +301,6 @@ fn check_counts(problem: &Problem<'_>, runs: &Runs, scope: &Scope) -> Result<(),
     let is_first = |p: usize| scope.starts.iter().any(|&(first, _)| first == p);
     let met: Vec<Topology> =
         runs.complete(problem).filter(|(run, _)| is_first(run.first)).map(|(_, t)| t).collect();
-    let is_open = problem.shape == Shape::Open;
-    let graph = Connectivity::new(problem, Goal::default(), scope, NODE_LIMIT).expect("the problem is small");
-    let found = ranges(problem, &graph);
-    prop_assert!(found.is_some() || met.is_empty());
-    prop_assert!(found.is_none() || !is_open || !met.is_empty());
-    let ends = |of: fn(&Topology) -> u32| (met.iter().map(of).min(), met.iter().map(of).max());
     let coarse = bounds(problem, scope);
     prop_assert!(coarse.is_some() || met.is_empty());
     if let Some(Ranges { least, most }) = coarse {
@@ -316,6 +310,25 @@ fn check_counts(problem: &Problem<'_>, runs: &Runs, scope: &Scope) -> Result<(),
         };
         prop_assert!(met.iter().all(is_within), "{least:?} to {most:?} by pieces alone: {met:?}");
     }
+    let by_piece = Connectivity::new(problem, Goal::default(), scope, NODE_LIMIT);
+    let of_kinds = Connectivity::of_kinds(problem, Goal::default(), scope, NODE_LIMIT);
+    let [by_piece, of_kinds] = [by_piece, of_kinds].map(|graph| graph.expect("the problem is small"));
+    prop_assert!(of_kinds.len() <= by_piece.len());
+    check_counts_of(problem, &met, &by_piece)?;
+    check_counts_of(problem, &met, &of_kinds)
+}
+
+/// That a graph tells the counts of the runs that were `met`; in a ring, at least those.
+fn check_counts_of(
+    problem: &Problem<'_>,
+    met: &[Topology],
+    graph: &Connectivity,
+) -> Result<(), TestCaseError> {
+    let is_open = problem.shape == Shape::Open;
+    let found = ranges(problem, graph);
+    prop_assert!(found.is_some() || met.is_empty());
+    prop_assert!(found.is_none() || !is_open || !met.is_empty());
+    let ends = |of: fn(&Topology) -> u32| (met.iter().map(of).min(), met.iter().map(of).max());
     if let (Some(range), (Some(few), Some(many)), (Some(low), Some(high))) =
         (found, ends(|t| t.components), ends(|t| t.holes))
     {
@@ -339,7 +352,7 @@ fn check_counts(problem: &Problem<'_>, runs: &Runs, scope: &Scope) -> Result<(),
         [(None, None), (Some(4), None), (None, Some(150)), (Some(4), Some(150)), (Some(90), Some(3))]
     {
         let set =
-            counts(problem, &graph, Caps { components, holes }, usize::MAX).expect("the problem is small");
+            counts(problem, graph, Caps { components, holes }, usize::MAX).expect("the problem is small");
         let read =
             |counts: Counts| (components.map_or(0, |_| counts.components), holes.map_or(0, |_| counts.holes));
         let had: BTreeSet<(u32, u32)> =

@@ -51,13 +51,19 @@ const BEAMS: [usize; 3] = [300, 3_000, 30_000];
 /// Runs of each length that it keeps at least.
 const NARROWEST_BEAM: usize = 30;
 
-/// The cheapest run, or ring, that `automaton` accepts.
-pub(super) fn cheapest(problem: &Problem<'_>, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
-    let search = Cheapest::new(problem, automaton);
-    if problem.variety.is_some() {
-        return search.varied(automaton);
-    }
-    search.solve(automaton)
+/// The cheapest run, or ring, that `automaton` accepts. Whether it `is_hopeless` is asked before the first dear estimates
+/// are made. With the effort that it took.
+pub(super) fn cheapest(
+    problem: &Problem<'_>,
+    automaton: &mut Automaton<'_>,
+    is_hopeless: &dyn Fn() -> bool,
+) -> (Result<Solution, Unsolved>, usize) {
+    let mut search = Cheapest::new(problem, automaton, is_hopeless);
+    let found = match problem.variety {
+        Some(_) => search.varied(automaton),
+        None => search.solve(automaton),
+    };
+    (found, search.effort + search.learning)
 }
 
 /// The same from a standing that no small problem comes to: the level, whether drifts are told apart, the effort after
@@ -69,7 +75,7 @@ pub(super) fn cheapest_from(
     (level, by_drift, short): (Level, bool, usize),
     mut force: impl FnMut(&mut Family, &mut Automaton<'_>),
 ) -> Result<Solution, Unsolved> {
-    let mut search = Cheapest { level, by_drift, short, ..Cheapest::new(problem, automaton) };
+    let mut search = Cheapest { level, by_drift, short, ..Cheapest::new(problem, automaton, &|| false) };
     search.families.iter_mut().for_each(|family| force(family, automaton));
     search.catch_up(automaton);
     search.solve(automaton)
@@ -86,6 +92,7 @@ fn short(problem: &Problem<'_>, families: &[Family]) -> usize {
 
 struct Cheapest<'p> {
     problem: &'p Problem<'p>,
+    is_hopeless: &'p dyn Fn() -> bool,
     families: Vec<Family>,
     /// Runs of at most this estimate are looked at.
     threshold: Cost,
@@ -99,6 +106,8 @@ struct Cheapest<'p> {
     /// Which estimates were found to be worth while.
     level: Level,
     labels: usize,
+    /// The work of making dear estimates, counted in labels.
+    learning: usize,
     /// The work of all walks, counted in labels.
     effort: usize,
     /// Of it, what was done before the estimates were those of the level, and runs told apart by drift or not.
@@ -121,12 +130,13 @@ struct Round {
 }
 
 impl<'p> Cheapest<'p> {
-    fn new(problem: &'p Problem<'p>, automaton: &Automaton<'_>) -> Self {
+    fn new(problem: &'p Problem<'p>, automaton: &Automaton<'_>, is_hopeless: &'p dyn Fn() -> bool) -> Self {
         let families = families(problem, automaton.goal().closed_pattern);
         let threshold = families.iter().map(Family::estimate).min().unwrap_or(NEVER);
         let short = short(problem, &families);
         Self {
             problem,
+            is_hopeless,
             families,
             threshold,
             floor: threshold,
@@ -136,12 +146,13 @@ impl<'p> Cheapest<'p> {
             level: if automaton.goal().is_free() { Level::Topology } else { Level::Pieces },
             labels: 0,
             effort: 0,
+            learning: 0,
             effort_before: 0,
             last: 0,
         }
     }
 
-    fn solve(mut self, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
+    fn solve(&mut self, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
         // Walks in a row that were too long.
         let mut leaps = 0;
         let mut labels_per_run = LABELS_PER_RUN;
@@ -226,6 +237,9 @@ impl<'p> Cheapest<'p> {
 
     /// Goes on to the next level of estimates.
     fn learn(&mut self, automaton: &mut Automaton<'_>) {
+        if self.level == Level::Pieces && (self.is_hopeless)() {
+            self.families.iter_mut().for_each(|family| family.members.clear());
+        }
         self.level = match (self.level, self.by_drift) {
             (Level::Pieces, false) => Level::Topology,
             (Level::Topology, false) => Level::Fine,
@@ -233,6 +247,7 @@ impl<'p> Cheapest<'p> {
             (Level::Prices | Level::Drift, _) => Level::Drift,
         };
         self.effort_before = self.effort;
+        self.learning += self.short;
         self.catch_up(automaton);
     }
 
@@ -317,7 +332,7 @@ impl<'p> Cheapest<'p> {
                 if is_new
                     && !goal.is_free()
                     && !family.estimates.is_exact()
-                    && is_out_of_range(problem, goal, &family.scope, family.estimates.connections())
+                    && is_out_of_range(problem, goal, &family.scope)
                 {
                     family.members.clear();
                 }
@@ -345,7 +360,7 @@ impl<'p> Cheapest<'p> {
     }
 
     /// The best run that a beam finds, member by member.
-    fn beam(mut self, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
+    fn beam(&mut self, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
         let mut left = self.problem.memory_limit / LABEL_BYTES;
         let layers = *self.problem.window.end() as usize;
         for width in BEAMS {
@@ -363,7 +378,7 @@ impl<'p> Cheapest<'p> {
 
     /// The best run that the paper's table finds with the penalty on repetition (Zhou 2014 §3.7): of the runs of a
     /// length, as many as can be looked at are kept.
-    fn varied(mut self, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
+    fn varied(&mut self, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
         /// Terms of correlations that are added up for one member.
         const PATIENCE: usize = 400_000_000;
         /// Members that are looked at, the most promising first.
@@ -419,13 +434,14 @@ impl<'p> Cheapest<'p> {
         let passage = walk.run(automaton, Beyond::new(NEVER - 1));
         family.keep_table(at, table);
         self.labels += passage.labels;
+        self.effort += passage.effort;
         self.best = passage.found.or(self.best.take());
         passage.effort
     }
 
-    fn finish(self, automaton: &Automaton<'_>) -> Result<Solution, Unsolved> {
-        let Self { best, floor, labels, .. } = self;
-        match best {
+    fn finish(&mut self, automaton: &Automaton<'_>) -> Result<Solution, Unsolved> {
+        let Self { floor, labels, .. } = *self;
+        match self.best.take() {
             Some((sequence, cost, total)) => {
                 let gap = total.saturating_sub(floor);
                 Ok(Solution { sequence, cost, gap, labels, states: automaton.len() })

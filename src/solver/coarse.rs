@@ -6,7 +6,9 @@
 //! less χ, are at most as many as strands merge. One pass over the pieces takes next to no time where the graph of
 //! connections would be too large. Excluded: which strands are connected already, which [`super::counts`] knows.
 
-use super::connectivity::{Connectivity, Counts};
+use std::collections::BTreeMap;
+
+use super::connectivity::{Connectivity, Counts, kinds};
 use super::counts::{Ranges, is_soon_ranged, ranges};
 use super::graph::Scope;
 use super::problem::Problem;
@@ -19,11 +21,12 @@ type Sums = [i64; 6];
 /// Bounds on the counts of the runs within `scope` in the window; `None` when there is no run.
 pub(super) fn bounds(problem: &Problem<'_>, scope: &Scope) -> Option<Ranges> {
     let gains: Vec<Sums> = problem.descriptors.iter().map(gain).collect();
+    let kinds = kinds(problem, scope);
     let longest = *problem.window.end();
     let n = problem.pieces();
     let layers = problem.widths.iter().max().map_or(1, |&w| w as usize) + 1;
     let mut met: Vec<Option<Sums>> = vec![None; layers * n];
-    let place = |length: u32, piece: usize| length as usize % layers * n + piece;
+    let place = |length: u32, kind: usize| length as usize % layers * n + kind;
     for &(first, _) in scope.starts.iter().filter(|&&(first, _)| problem.widths[first] <= longest) {
         let mut sums = gains[first];
         if problem.shape == Shape::Ring {
@@ -31,20 +34,29 @@ pub(super) fn bounds(problem: &Problem<'_>, scope: &Scope) -> Option<Ranges> {
             let around = problem.descriptors[first].left().len() as i64;
             (sums[0], sums[1]) = (sums[0] + around, sums[1] + around);
         }
-        join(&mut met[place(problem.widths[first], first)], sums);
+        join(&mut met[place(problem.widths[first], kinds[first])], sums);
     }
+    // Of pieces that are as wide and lead to the same, the most of each sum.
+    let joins: Vec<BTreeMap<(usize, u32), Option<Sums>>> = (0..n)
+        .map(|piece| {
+            let mut joins = BTreeMap::new();
+            let steps = problem.steps[piece].iter().filter(|_| kinds[piece] == piece);
+            for to in steps.map(|step| step.to).filter(|&to| scope.allowed[to]) {
+                join(joins.entry((kinds[to], problem.widths[to])).or_default(), gains[to]);
+            }
+            joins
+        })
+        .collect();
     let mut found = None;
     for length in 1..=longest {
-        for piece in 0..n {
-            let Some(sums) = met[place(length, piece)].take() else { continue };
-            if scope.stop[piece].is_some() && problem.window.contains(&length) {
+        for kind in 0..n {
+            let Some(sums) = met[place(length, kind)].take() else { continue };
+            if scope.stop[kind].is_some() && problem.window.contains(&length) {
                 join(&mut found, sums);
             }
-            for step in problem.steps[piece].iter().filter(|s| scope.allowed[s.to]) {
-                let longer = length + problem.widths[step.to];
-                if longer <= longest {
-                    let gain = gains[step.to];
-                    join(&mut met[place(longer, step.to)], std::array::from_fn(|i| sums[i] + gain[i]));
+            for (&(to, width), gain) in &joins[kind] {
+                if let Some(gain) = gain.filter(|_| length + width <= longest) {
+                    join(&mut met[place(length + width, to)], std::array::from_fn(|i| sums[i] + gain[i]));
                 }
             }
         }

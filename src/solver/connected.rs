@@ -7,7 +7,7 @@
 
 use rustc_hash::FxHashMap;
 
-use super::connectivity::{Connectivity, Counts};
+use super::connectivity::{Begin, Connectivity, Counts};
 use super::graph::{Edge, Graph, Scope, Toll};
 use super::price::Start;
 use super::priced::Passes;
@@ -48,22 +48,17 @@ impl Connected {
         let estimate = |(priced, wanted): (Priced, Wanted)| {
             let mut passes = Passes::new(problem, counted(problem, scope, &graph, priced))?;
             let bounds = i64::from(wanted.least())..=i64::from(wanted.most());
-            passes.learn_counts(problem, &starts(problem, scope, &graph, priced), bounds);
+            passes.learn_counts(problem, &starts(scope, &graph, priced), bounds);
             Some((priced, passes))
         };
         let estimates: Vec<_> = wanted.filter_map(estimate).collect();
         (!estimates.is_empty()).then(|| Self { graph, estimates, nodes: FxHashMap::default() })
     }
 
-    /// The graph.
-    pub(super) fn graph(&self) -> &Connectivity {
-        &self.graph
-    }
-
     /// Makes the estimates know the drift, by prices.
     pub(super) fn learn_drift(&mut self, problem: &Problem<'_>, scope: &Scope) {
         for (priced, passes) in &mut self.estimates {
-            passes.learn_drift(problem, &starts(problem, scope, &self.graph, *priced));
+            passes.learn_drift(problem, &starts(scope, &self.graph, *priced));
         }
     }
 
@@ -113,12 +108,12 @@ fn counted(problem: &Problem<'_>, scope: &Scope, connectivity: &Connectivity, pr
     graph
 }
 
-fn starts(problem: &Problem<'_>, scope: &Scope, graph: &Connectivity, priced: Priced) -> Vec<Start> {
-    let start = |&(node, closes): &(u32, Counts)| {
+fn starts(scope: &Scope, graph: &Connectivity, priced: Priced) -> Vec<Start> {
+    let start = |&Begin { node, width, closes }: &Begin| {
         let piece = graph.piece(node as usize);
         let cost = scope.starts.iter().find(|&&(first, _)| first == piece).map_or(0, |&(_, cost)| cost);
         let count = i64::from(priced.of(closes));
-        Start { node: node as usize, length: problem.widths[piece], cost, count }
+        Start { node: node as usize, length: width, cost, count }
     };
     graph.starts().iter().map(start).collect()
 }

@@ -4,6 +4,9 @@
 //! components and holes that it closes. Counts and costs only add up along a path, so questions of how many
 //! and how much are path questions on this graph. Excluded: drift, and in a ring which of the first pieces
 //! with equally many portals it began with. What the graph forbids is impossible; what it allows may not be.
+//!
+//! Where only counts are asked for and no costs, pieces that may be followed by the same pieces lead to the same node:
+//! with all joins admitted those are all with as many portals on the right, which leaves a graph many times smaller.
 
 use rustc_hash::FxHashMap;
 
@@ -12,7 +15,7 @@ use super::problem::Problem;
 use crate::topology::{Descriptor, Goal, Shape};
 
 /// Components and holes that are closed on the way.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub(super) struct Counts {
     pub(super) components: u32,
     pub(super) holes: u32,
@@ -25,22 +28,33 @@ impl Counts {
 }
 
 /// A join.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Edge {
     pub(super) to: u32,
+    /// The width of the piece that is joined, in bins.
+    pub(super) width: u32,
+    pub(super) closes: Counts,
+}
+
+/// A run of one piece.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Begin {
+    pub(super) node: u32,
+    /// Its width, in bins.
+    pub(super) width: u32,
     pub(super) closes: Counts,
 }
 
 /// The graph.
 #[derive(Clone)]
 pub(super) struct Connectivity {
-    /// The last piece of each node.
+    /// The last piece of each node, or one that may be followed by the same.
     pieces: Vec<u32>,
     edges: Vec<Edge>,
     /// Where the edges of each node begin, and where all end.
     first_edge: Vec<u32>,
     endings: Vec<Option<Counts>>,
-    starts: Vec<(u32, Counts)>,
+    starts: Vec<Begin>,
     nodes: FxHashMap<(u32, u32), u32>,
     /// Numbers of the ways of being connected.
     known: FxHashMap<Descriptor, u32>,
@@ -50,9 +64,25 @@ pub(super) struct Connectivity {
 pub(super) const NODE_LIMIT: usize = 30_000;
 
 impl Connectivity {
-    /// The graph of all runs within `scope` of which the goal does not rule out a join by itself; `None` when
-    /// it has more than `limit` nodes.
+    /// The graph of all runs within `scope` of which the goal does not rule out a join by itself, with a node for each
+    /// last piece; `None` when it has more than `limit` nodes.
     pub(super) fn new(problem: &Problem<'_>, goal: Goal, scope: &Scope, limit: usize) -> Option<Self> {
+        Self::explore(problem, goal, scope, &(0..problem.pieces()).collect::<Vec<_>>(), limit)
+    }
+
+    /// The same for counting only: last pieces that may be followed by the same have one node together.
+    pub(super) fn of_kinds(problem: &Problem<'_>, goal: Goal, scope: &Scope, limit: usize) -> Option<Self> {
+        Self::explore(problem, goal, scope, &kinds(problem, scope), limit)
+    }
+
+    /// The graph whose nodes are those of the piece that stands for each.
+    fn explore(
+        problem: &Problem<'_>,
+        goal: Goal,
+        scope: &Scope,
+        kinds: &[usize],
+        limit: usize,
+    ) -> Option<Self> {
         let mut graph = Self {
             pieces: Vec::new(),
             edges: Vec::new(),
@@ -69,10 +99,11 @@ impl Connectivity {
         for &(first, _) in &scope.starts {
             let (state, closes) = enter(&mut known, &mut states, &problem.descriptors[first]);
             if admits(goal, closes, states[state as usize].open()) {
-                let node = graph.meet(first as u32, state, &mut queue);
-                graph.starts.push((node, closes));
+                let node = graph.meet(kinds[first] as u32, state, &mut queue);
+                graph.starts.push(Begin { node, width: problem.widths[first], closes });
             }
         }
+        let mut leaving: Vec<Edge> = Vec::new();
         let mut at = 0;
         while let Some(&(piece, state)) = queue.get(at) {
             at += 1;
@@ -91,10 +122,13 @@ impl Connectivity {
                     admits(goal, closes, run.open()).then_some((state, closes))
                 });
                 if let Some((state, closes)) = joined {
-                    let to = graph.meet(step.to as u32, state, &mut queue);
-                    graph.edges.push(Edge { to, closes });
+                    let to = graph.meet(kinds[step.to] as u32, state, &mut queue);
+                    leaving.push(Edge { to, width: problem.widths[step.to], closes });
                 }
             }
+            leaving.sort_unstable();
+            leaving.dedup();
+            graph.edges.append(&mut leaving);
         }
         graph.first_edge.push(graph.edges.len() as u32);
         graph.known = known;
@@ -125,7 +159,7 @@ impl Connectivity {
         self.edges.len()
     }
 
-    /// The last piece of a node.
+    /// The last piece of a node, or one that stands for it.
     pub(super) fn piece(&self, node: usize) -> usize {
         self.pieces[node] as usize
     }
@@ -141,9 +175,21 @@ impl Connectivity {
     }
 
     /// The runs of one piece, and what is closed in them.
-    pub(super) fn starts(&self) -> &[(u32, Counts)] {
+    pub(super) fn starts(&self) -> &[Begin] {
         &self.starts
     }
+}
+
+/// For each piece the first that may be followed by the same pieces, and stopped at as well.
+pub(super) fn kinds(problem: &Problem<'_>, scope: &Scope) -> Vec<usize> {
+    let mut first: FxHashMap<(Vec<usize>, bool), usize> = FxHashMap::default();
+    let kind = |piece: usize| {
+        let steps = problem.steps[piece].iter().map(|step| step.to);
+        let mut followers: Vec<usize> = steps.filter(|&to| scope.allowed[to]).collect();
+        followers.sort_unstable();
+        *first.entry((followers, scope.stop[piece].is_some())).or_insert(piece)
+    };
+    (0..problem.pieces()).map(kind).collect()
 }
 
 /// The state of a run with nothing closed, and what was.

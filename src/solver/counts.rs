@@ -5,7 +5,7 @@
 //! are held at a time. As the graph knows no drift, the sets hold every count that can be had, and may hold
 //! some that cannot.
 
-use super::connectivity::{Connectivity, Counts};
+use super::connectivity::{Begin, Connectivity, Counts};
 use super::problem::Problem;
 use crate::topology::{Goal, Wanted};
 
@@ -76,9 +76,8 @@ pub(super) fn counts(
     let mut sets = vec![0u64; layers * n * size];
     let mut is_met = vec![false; layers * n];
     let mut found = vec![0u64; size];
-    for &(node, closes) in graph.starts() {
-        let length = problem.widths[graph.piece(node as usize)] as usize;
-        let place = length % layers * n + node as usize;
+    for &Begin { node, width, closes } in graph.starts() {
+        let place = width as usize % layers * n + node as usize;
         let mut one = vec![0u64; size];
         one[0] = 1;
         frame.add_shifted(&mut sets[place * size..][..size], &one, closes);
@@ -98,7 +97,7 @@ pub(super) fn counts(
                 frame.add_shifted(&mut found, &set, ending);
             }
             for edge in graph.edges(node) {
-                let longer = length + problem.widths[graph.piece(edge.to as usize)] as usize;
+                let longer = length + edge.width as usize;
                 if longer <= longest {
                     let place = longer % layers * n + edge.to as usize;
                     frame.add_shifted(&mut sets[place * size..][..size], &set, edge.closes);
@@ -124,9 +123,8 @@ pub(super) fn ranges(problem: &Problem<'_>, graph: &Connectivity) -> Option<Rang
     let n = graph.len();
     let layers = problem.widths.iter().max().map_or(1, |&w| w as usize) + 1;
     let mut met: Vec<Option<Ranges>> = vec![None; layers * n];
-    for &(node, closes) in graph.starts() {
-        let length = problem.widths[graph.piece(node as usize)] as usize;
-        Ranges::EMPTY.plus(closes).join(&mut met[length % layers * n + node as usize]);
+    for &Begin { node, width, closes } in graph.starts() {
+        Ranges::EMPTY.plus(closes).join(&mut met[width as usize % layers * n + node as usize]);
     }
     let mut found = None;
     for length in 1..=longest {
@@ -136,7 +134,7 @@ pub(super) fn ranges(problem: &Problem<'_>, graph: &Connectivity) -> Option<Rang
                 here.plus(ending).join(&mut found);
             }
             for edge in graph.edges(node) {
-                let longer = length + problem.widths[graph.piece(edge.to as usize)] as usize;
+                let longer = length + edge.width as usize;
                 if longer <= longest {
                     here.plus(edge.closes).join(&mut met[longer % layers * n + edge.to as usize]);
                 }
@@ -209,13 +207,16 @@ impl Frame {
         let Some((rows, bits)) = self.place(closes) else { return };
         let (words, bits) = (bits / 64, bits % 64);
         for row in rows..self.rows {
-            let from = &other[(row - rows) * self.words..][..self.words];
-            let to = &mut set[row * self.words..][..self.words];
-            for w in words..self.words {
-                to[w] |= from[w - words] << bits;
-                if bits > 0 && w > words {
-                    to[w] |= from[w - words - 1] >> (64 - bits);
-                }
+            let from = &other[(row - rows) * self.words..][..self.words - words];
+            let to = &mut set[row * self.words..][words..self.words];
+            if bits == 0 {
+                to.iter_mut().zip(from).for_each(|(to, &from)| *to |= from);
+                continue;
+            }
+            let mut carried = 0;
+            for (to, &from) in to.iter_mut().zip(from) {
+                *to |= from << bits | carried;
+                carried = from >> (64 - bits);
             }
         }
     }

@@ -15,7 +15,6 @@ use std::sync::Arc;
 
 use super::classes::Classes;
 use super::connected::Connected;
-use super::connectivity::Connectivity;
 use super::graph::{Explored, Scope, Toll, of_pieces};
 use super::lengths::has_level_run;
 use super::price::Start;
@@ -161,11 +160,6 @@ impl Estimates {
             let found = with_drift(problem, scope, limit);
             self.drifts = found.and_then(|explored| drifting(problem, explored));
         }
-    }
-
-    /// The graph of connections, where an estimate has made it.
-    pub(super) fn connections(&self) -> Option<&Connectivity> {
-        self.connected.as_ref().map(Connected::graph)
     }
 
     /// Whether the estimate leaves nothing but the drift out of account.

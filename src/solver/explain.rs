@@ -78,12 +78,11 @@ pub fn explain(problem: &Problem<'_>, goal: Goal, longest: u32) -> Refusal {
         }
         (None, None) => Refusal::Drift,
         (Some(of_components), Some(of_holes)) => {
-            let by_components = effort.solve(components);
+            let [by_components, by_holes] = effort.solve_both(components, holes);
             if by_components == Err(Unsolved::Infeasible) {
                 let nearest = nearest(&mut effort, others, of_components, Count::Components);
                 return Refusal::Components { nearest };
             }
-            let by_holes = effort.solve(holes);
             if by_holes == Err(Unsolved::Infeasible) {
                 return Refusal::Holes { nearest: nearest(&mut effort, others, of_holes, Count::Holes) };
             }

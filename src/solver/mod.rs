@@ -65,6 +65,28 @@ use crate::topology::{Automaton, Goal};
 /// [`Unsolved::Infeasible`] when no sequence meets the constraints, [`Unsolved::TooLarge`] when the search passed
 /// [`Problem::memory_limit`] and found none.
 pub fn solve(problem: &Problem<'_>, goal: Goal) -> Result<Solution, Unsolved> {
+    solve_unless(problem, goal, &|| false)
+}
+
+/// The same, for when something else may tell that there is no sequence, which takes too long to ask before a search
+/// that may be short: `is_hopeless` is asked when this one turns out not to be.
+///
+/// # Errors
+/// As [`solve`]; [`Unsolved::Infeasible`] also when it is hopeless.
+pub fn solve_unless(
+    problem: &Problem<'_>,
+    goal: Goal,
+    is_hopeless: &dyn Fn() -> bool,
+) -> Result<Solution, Unsolved> {
+    solve_with_effort(problem, goal, is_hopeless).0
+}
+
+/// The same, and how much work it was, in about as many labels.
+fn solve_with_effort(
+    problem: &Problem<'_>,
+    goal: Goal,
+    is_hopeless: &dyn Fn() -> bool,
+) -> (Result<Solution, Unsolved>, usize) {
     let mut automaton = Automaton::new(problem.descriptors, goal, problem.shape);
-    cheapest::cheapest(problem, &mut automaton)
+    cheapest::cheapest(problem, &mut automaton, is_hopeless)
 }

@@ -6,12 +6,15 @@
 //! it comes soon however many there are: first each has little memory, then more. A count that is named has a
 //! sequence; that there is none nearer is said only where every nearer one was refused by the graph or by a search.
 
+use std::panic::resume_unwind;
+use std::thread;
+
 use super::coarse::ranges_or_bounds;
 use super::connectivity::{Connectivity, Counts, NODE_LIMIT};
 use super::counts::{Caps, CountSet, Ranges, counts, work};
 use super::family::scopes;
 use super::problem::{Problem, Solution, Unsolved};
-use super::solve;
+use super::solve_with_effort;
 use crate::topology::{Goal, Topology, Wanted};
 
 /// A count that can be had instead of the one that was wanted.
@@ -23,10 +26,10 @@ pub struct Nearest {
     pub is_proven: bool,
 }
 
-/// Labels of all searches of a refusal together: about a third of a second.
-const MOST_LABELS: usize = 1_200_000;
-/// What a search takes that makes no labels of its own, counted in labels.
-const LABELS_PER_SEARCH: usize = 20_000;
+/// The effort of all searches of a refusal together, in labels: about a third of a second.
+const MOST_EFFORT: usize = 600_000;
+/// That of a search that ends at once.
+const LEAST_EFFORT: usize = 2_000;
 /// Memory of a search, in bytes, in the first round and in the second.
 const ROUND_BYTES: [usize; 2] = [2 << 20, 16 << 20];
 /// Word operations of all passes over sets of counts together: less than a tenth of a second.
@@ -42,13 +45,13 @@ const LEAP: u32 = 32;
 /// What the searches of a refusal may still take.
 pub(super) struct Effort<'p> {
     problem: &'p Problem<'p>,
-    labels: usize,
+    left: usize,
 }
 
 impl<'p> Effort<'p> {
     /// All of it.
     pub(super) fn new(problem: &'p Problem<'p>) -> Self {
-        Self { problem, labels: MOST_LABELS }
+        Self { problem, left: MOST_EFFORT }
     }
 
     /// A search with all the memory that one may have.
@@ -57,16 +60,27 @@ impl<'p> Effort<'p> {
         self.search(goal, bytes)
     }
 
+    /// Two searches at once, each with half of what is left.
+    pub(super) fn solve_both(&mut self, one: Goal, other: Goal) -> [Result<Solution, Unsolved>; 2] {
+        let problem = self.problem;
+        let halves = [self.left / 2, self.left - self.left / 2].map(|left| Self { problem, left });
+        let [(one, left), (other, also_left)] = thread::scope(|scope| {
+            let [mut half, mut second] = halves;
+            let other = scope.spawn(move || (second.solve(other), second.left));
+            let one = (half.solve(one), half.left);
+            [one, other.join().unwrap_or_else(|panic| resume_unwind(panic))]
+        });
+        self.left = left + also_left;
+        [one, other]
+    }
+
     fn search(&mut self, goal: Goal, memory_limit: usize) -> Result<Solution, Unsolved> {
-        if self.labels == 0 {
+        if self.left == 0 {
             return Err(Unsolved::TooLarge { labels: 0 });
         }
-        let found = solve(&Problem { memory_limit, ..self.problem.clone() }, goal);
-        let labels = match &found {
-            Ok(Solution { labels, .. }) | Err(Unsolved::TooLarge { labels }) => *labels,
-            Err(Unsolved::Infeasible) => 0,
-        };
-        self.labels = self.labels.saturating_sub(labels + LABELS_PER_SEARCH);
+        let problem = Problem { memory_limit, ..self.problem.clone() };
+        let (found, effort) = solve_with_effort(&problem, goal, &|| false);
+        self.left = self.left.saturating_sub(effort.max(LEAST_EFFORT));
         found
     }
 }
@@ -126,7 +140,7 @@ impl Possible {
         let all = scopes(problem, others.closed_pattern);
         for (before, scope) in all.iter().enumerate().rev() {
             let left = before + 1;
-            let graph = Connectivity::new(problem, others, scope, nodes / left);
+            let graph = Connectivity::of_kinds(problem, others, scope, nodes / left);
             nodes -= graph.as_ref().map_or(nodes / left, Connectivity::len);
             let ends = ranges_or_bounds(problem, scope, graph.as_ref()).map(|ranges| count.ends(ranges));
             let Some((least, most)) = ends else { continue };
@@ -275,10 +289,10 @@ pub(super) fn nearest(
     };
     let [.., ample] = ROUND_BYTES;
     // What the first search has to leave for the others.
-    let rest = effort.labels / 3;
+    let rest = effort.left / 3;
     let mut is_first = true;
     for bytes in ROUND_BYTES {
-        while effort.labels > 0 {
+        while effort.left > 0 {
             let limit = best(&sides).map(rank);
             let due = |side: &&mut Side| side.near.is_some_and(|n| limit.is_none_or(|limit| rank(n) < limit));
             let side = sides.iter_mut().filter(due).min_by_key(|side| side.near.map(rank));
@@ -290,7 +304,7 @@ pub(super) fn nearest(
             let bytes = if is_first { ample } else { bytes };
             let result = effort.search(count.wanted(others, range_wanted), bytes).map(counted);
             if std::mem::take(&mut is_first) {
-                effort.labels = effort.labels.max(rest);
+                effort.left = effort.left.max(rest);
             }
             side.learn(&possible, range, result);
         }
@@ -301,7 +315,7 @@ pub(super) fn nearest(
     }
     if best(&sides).is_none() {
         // Whatever the ornament has by itself is found at once, and more than nothing.
-        effort.labels = effort.labels.max(1);
+        effort.left = effort.left.max(1);
         let whole = effort.search(others, ample).ok().map(counted);
         return whole.map(|count| Nearest { count, is_proven: false });
     }

@@ -28,10 +28,7 @@ pub fn is_impossible(problem: &Problem<'_>, goal: Goal) -> bool {
     let (nodes, work) = (NODE_LIMIT / scopes.len().max(1), SOON / scopes.len().max(1));
     let mut automaton = Automaton::new(problem.descriptors, goal, problem.shape);
     scopes.iter().all(|scope| {
-        is_never(problem, &mut automaton, scope) || {
-            let graph = Connectivity::new(problem, goal, scope, nodes);
-            is_out(problem, goal, scope, graph.as_ref(), work)
-        }
+        is_never(problem, &mut automaton, scope) || { is_out(problem, goal, scope, nodes, work) }
     })
 }
 
@@ -67,25 +64,16 @@ pub(super) fn is_never(problem: &Problem<'_>, automaton: &mut Automaton<'_>, sco
 }
 
 /// Whether no run within `scope` of an accepted length has counts that meet the goal, as far as the graph of
-/// connections knows, which is made unless it is `known`. `false` also when that was not found out.
-pub(super) fn is_out_of_range(
-    problem: &Problem<'_>,
-    goal: Goal,
-    scope: &Scope,
-    known: Option<&Connectivity>,
-) -> bool {
-    let made = known.is_none().then(|| Connectivity::new(problem, goal, scope, NODE_LIMIT)).flatten();
-    is_out(problem, goal, scope, known.or(made.as_ref()), work_limit(problem))
+/// connections knows. `false` also when that was not found out.
+pub(super) fn is_out_of_range(problem: &Problem<'_>, goal: Goal, scope: &Scope) -> bool {
+    is_out(problem, goal, scope, NODE_LIMIT, work_limit(problem))
 }
 
-/// The same, by passes over the graph of at most so many word operations; without one, by the pieces alone.
-fn is_out(
-    problem: &Problem<'_>,
-    goal: Goal,
-    scope: &Scope,
-    graph: Option<&Connectivity>,
-    work: usize,
-) -> bool {
+/// The same, by passes over the graph of at most so many nodes and word operations; where it has more, by the pieces
+/// alone.
+fn is_out(problem: &Problem<'_>, goal: Goal, scope: &Scope, nodes: usize, work: usize) -> bool {
+    let graph = Connectivity::of_kinds(problem, goal, scope, nodes);
+    let graph = graph.as_ref();
     if ranges_or_bounds(problem, scope, graph).is_none_or(|ranges| is_outside(goal, ranges)) {
         return true;
     }
