@@ -84,8 +84,7 @@ pub(super) fn ways(
     clock: &mut Clock<'_>,
 ) -> Result<Vec<Way>, JobError> {
     let options = plan_options(job, cut, map);
-    if job.options.bridge_mm.is_some() && (options.goal.components.is_some() || options.goal.holes.is_some())
-    {
+    if job.options.bridge_mm.is_some() && is_counted(options.goal) {
         return bridged_ways(job, &options, cut, clock);
     }
     let found = with_any_successors(&options, job.options.choice, job.options.counted, cut, clock);
@@ -104,7 +103,7 @@ pub(super) fn ways(
 
 /// Why there is no plan, and what bridges would do. Both are looked for at once, as a refusal should come soon.
 fn why_with_hint(options: &PlanOptions, cut: &Cut, error: Unsolved) -> (PlanError, String) {
-    if error != Unsolved::Infeasible {
+    if error != Unsolved::Infeasible || !is_counted(options.goal) {
         return (why(&cut.catalogue, options, error), String::new());
     }
     let (error, best) = thread::scope(|scope| {
@@ -117,6 +116,11 @@ fn why_with_hint(options: &PlanOptions, cut: &Cut, error: Unsolved) -> (PlanErro
     let hint = |plan| bridging::hint(options.goal, with_topology(cut, options, plan).1);
     let hint = best.map_or_else(String::new, hint);
     (error, hint)
+}
+
+/// Whether there is something for bridges to do.
+fn is_counted(goal: Goal) -> bool {
+    goal.components.is_some() || goal.holes.is_some()
 }
 
 /// What is left of a goal for bridges to do the rest: the components rather than the holes, as slits across strands

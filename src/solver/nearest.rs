@@ -27,7 +27,7 @@ pub struct Nearest {
 }
 
 /// The effort of all searches of a refusal together, in labels: about a third of a second.
-const MOST_EFFORT: usize = 600_000;
+const MOST_EFFORT: usize = 1_500_000;
 /// That of a search that ends at once.
 const LEAST_EFFORT: usize = 2_000;
 /// Memory of a search, in bytes, in the first round and in the second.
