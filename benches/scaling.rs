@@ -75,6 +75,7 @@ fn by_length(exemplar: &str, most: usize) -> Curve {
             seed: None,
             variety: None,
             memory_limit: DEFAULT_MEMORY_LIMIT,
+            effort: None,
         };
         let (plan, ms, mib) = take(|| plan(&catalogue, &options));
         let plan = match plan {

@@ -87,6 +87,7 @@ fn solve(catalogue: &Catalogue, shape: Shape, length_mm: f64) -> Plan {
         seed: None,
         variety: None,
         memory_limit: DEFAULT_MEMORY_LIMIT,
+        effort: None,
     };
     plan(catalogue, &options).expect("the fixtures make bands of one component")
 }

@@ -101,6 +101,7 @@ fn answer(catalogue: &Catalogue, change: Change, request: &Request, goal: Goal) 
         drift_limit: request.drift_limit,
         variety: None,
         memory_limit: 1 << 28,
+        effort_limit: usize::MAX,
     };
     let solution = solve(&problem, goal).ok()?;
     let pieces = solution.sequence.iter().map(|&p| &catalogue.descriptors()[p]);

@@ -59,6 +59,7 @@ fn problem<'a>(pieces: &'a Pieces, request: &Request) -> Problem<'a> {
         drift_limit: request.drift_limit,
         variety: None,
         memory_limit: request.label_limit * LABEL_BYTES,
+        effort_limit: usize::MAX,
     }
 }
 

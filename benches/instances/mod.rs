@@ -96,6 +96,7 @@ impl Instance {
             drift_limit: (DRIFT_UNITS / 2.0) as i32,
             variety: None,
             memory_limit: 2 << 30,
+            effort_limit: usize::MAX,
         }
     }
 

@@ -229,6 +229,11 @@ pub(super) struct PatternArguments {
     /// tried takes 8MB at most
     #[arg(long, value_name = "SIZE", value_parser = values::memory, default_value = "2GB")]
     pub(super) memory_limit: usize,
+    /// Partial sequences that the search looks at before it gives optimality up, in millions, of which one takes about a
+    /// second; it then takes the best that a beam finds, and says how far from the optimum that may be [default: 4, more
+    /// for long bands]
+    #[arg(long, value_name = "MILLIONS", value_parser = values::effort)]
+    pub(super) effort: Option<usize>,
     /// Join components by struts and open holes by slits of this width, as few and as short as can be, where the ornament
     /// cannot give the components or holes asked for, or only with many jumps: a bridge costs as much as half a jump
     /// [default: none, and what cannot be is refused]

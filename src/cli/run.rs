@@ -233,6 +233,9 @@ pub(super) fn with_pattern(builder: BandBuilder, a: &PatternArguments) -> Result
     if let Some(width) = a.width {
         builder = builder.width_mm(width);
     }
+    if let Some(effort) = a.effort {
+        builder = builder.effort(effort);
+    }
     if let Some(components) = a.components.0 {
         builder = builder.components(components);
     }

@@ -10,11 +10,13 @@ pub(super) fn length(text: &str) -> Result<f64, String> {
     parse_length_mm(text).map_err(|e| e.to_string())
 }
 
-/// A size of memory in bytes: `512MB`, `2GB`, `64MB`.
+/// A size of memory in bytes: `512MB`, `2GB`, `2GiB`.
 pub(super) fn memory(text: &str) -> Result<usize, String> {
     let wanted = "use a number of megabytes or gigabytes, as 512MB or 2GB";
     let upper = text.to_ascii_uppercase();
-    let (number, unit) = match (upper.strip_suffix("MB"), upper.strip_suffix("GB")) {
+    // A MiB is what is meant here by MB.
+    let short = upper.strip_suffix("IB").map_or_else(|| upper.clone(), |number| format!("{number}B"));
+    let (number, unit) = match (short.strip_suffix("MB"), short.strip_suffix("GB")) {
         (Some(number), _) => (number, 1usize << 20),
         (_, Some(number)) => (number, 1 << 30),
         _ => return Err(format!("'{text}' is no size of memory; {wanted}")),
@@ -22,6 +24,16 @@ pub(super) fn memory(text: &str) -> Result<usize, String> {
     match number.trim().parse::<usize>().ok().and_then(|n| n.checked_mul(unit)) {
         Some(bytes) if bytes > 0 => Ok(bytes),
         _ => Err(format!("'{text}' is no size of memory; {wanted}")),
+    }
+}
+
+/// Millions of partial runs, as a number of them: `4`, `0.5`.
+pub(super) fn effort(text: &str) -> Result<usize, String> {
+    match text.parse::<f64>() {
+        Ok(millions) if millions > 0.0 && millions <= 1e6 => Ok((millions * 1e6).ceil() as usize),
+        _ => {
+            Err(format!("'{text}' is no number of millions; use one above 0 and up to 1000000, as 20 or 0.5"))
+        }
     }
 }
 
@@ -139,8 +151,17 @@ mod tests {
     #[test]
     fn sizes_of_memory_have_units() {
         assert_eq!((memory("512MB"), memory("2gb")), (Ok(512 << 20), Ok(2 << 30)));
+        assert_eq!((memory("512MiB"), memory("2 GiB")), (Ok(512 << 20), Ok(2 << 30)));
         for wrong in ["", "2", "0MB", "-1GB", "xMB", "99999999999999999GB"] {
             assert!(memory(wrong).unwrap_err().contains("as 512MB"), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn effort_is_in_millions() {
+        assert_eq!((effort("4"), effort("0.5")), (Ok(4_000_000), Ok(500_000)));
+        for wrong in ["", "0", "-1", "nan", "inf", "4M"] {
+            assert!(effort(wrong).unwrap_err().contains("as 20 or 0.5"), "{wrong}");
         }
     }
 

@@ -56,6 +56,7 @@ pub struct BandBuilder {
     pub(super) contact_sheet: bool,
     pub(super) counted: bool,
     pub(super) memory_limit: usize,
+    pub(super) effort: Option<usize>,
     pub(super) laser: LaserOptions,
     pub(super) enforce: bool,
     pub(super) material: Option<Material>,
@@ -91,6 +92,7 @@ impl BandBuilder {
             contact_sheet: true,
             counted: false,
             memory_limit: DEFAULT_MEMORY_LIMIT,
+            effort: None,
             laser: LaserOptions::default(),
             enforce: false,
             material: None,
@@ -250,6 +252,13 @@ impl BandBuilder {
     /// says how far from the optimum it may be.
     pub fn memory_limit(mut self, bytes: usize) -> Self {
         self.memory_limit = bytes;
+        self
+    }
+
+    /// The partial runs that the search may look at before it gives optimality up as it does beyond the memory.
+    /// Without a number it is as many as take a few seconds.
+    pub fn effort(mut self, partial_runs: usize) -> Self {
+        self.effort = Some(partial_runs);
         self
     }
 

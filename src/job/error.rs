@@ -48,7 +48,7 @@ pub enum JobError {
     Refused(String),
     /// The search was given up before it found a sequence.
     #[error(
-        "the search for a sequence was given up after {labels} partial runs, without finding one and without showing that there is none; try counts nearer to the ornament's own, a shorter curve, coarser --slicing uniform:T, or a larger --memory-limit"
+        "the search for a sequence was given up after {labels} partial runs, without finding one and without showing that there is none; try counts nearer to the ornament's own, a shorter curve, coarser --slicing uniform:T, or a larger --effort and --memory-limit"
     )]
     SearchTooLarge {
         /// Labels made until then.

@@ -24,6 +24,9 @@ pub struct PlanOptions {
     pub variety: Option<Variety>,
     /// The memory that the search may take, in bytes, before it gives optimality up.
     pub memory_limit: usize,
+    /// The partial runs that it may look at before it does; `None` for as many as take a few seconds, and more the
+    /// longer the run is.
+    pub effort: Option<usize>,
 }
 
 /// A sequence of pieces that meets the constraints.
@@ -82,6 +85,10 @@ const DRIFT_UNITS: f64 = 64.0;
 const SEED_SPREAD: f64 = 2.0;
 /// The λ that this part is taken of when λ is smaller, so that a seed has an effect without λ too.
 const LEAST_SEEDED_JUMP: f64 = 0.1;
+/// The partial runs that a search looks at when nothing else is asked for, at least, and for each bin of the length. Five
+/// times as many took five times as long for answers of the same cost wherever optimality was given up.
+const DEFAULT_EFFORT: usize = 4_000_000;
+const EFFORT_PER_BIN: usize = 500;
 /// The memory that a search may take when nothing else is asked for, in bytes.
 pub const DEFAULT_MEMORY_LIMIT: usize = 2 << 30;
 
@@ -227,7 +234,8 @@ fn problem<'a>(catalogue: &'a Catalogue, options: &PlanOptions, bin_mm: f64) -> 
     let pieces = catalogue.pieces();
     let micro = |cost: f64| (cost * 1e6).round() as Cost;
     // A piece that is longer than any run may be is as good as one that just does not fit.
-    let too_long = (options.length_mm * 2.0 / bin_mm) as u32 + 2;
+    let length_bins = (options.length_mm / bin_mm) as usize;
+    let too_long = 2 * length_bins as u32 + 2;
     let widths = pieces.iter().map(|p| bins(p, bin_mm).min(too_long)).collect();
     let unit_mm = options.height_mm / DRIFT_UNITS;
     let seed_spread = SEED_SPREAD * options.weights.jump.max(LEAST_SEEDED_JUMP);
@@ -271,6 +279,7 @@ fn problem<'a>(catalogue: &'a Catalogue, options: &PlanOptions, bin_mm: f64) -> 
         drift_limit: (DRIFT_UNITS / 2.0) as i32,
         variety: options.variety,
         memory_limit: options.memory_limit,
+        effort_limit: options.effort.unwrap_or_else(|| DEFAULT_EFFORT.max(length_bins * EFFORT_PER_BIN)),
     }
 }
 

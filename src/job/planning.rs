@@ -67,6 +67,7 @@ pub(super) fn plan_options(job: &BandJob, cut: &Cut, map: &BandMap) -> PlanOptio
         seed: job.options.seed,
         variety: job.variety.map(|variety| variety.with_mirrored(cut.catalogue.originals())),
         memory_limit: job.memory_limit,
+        effort: job.options.effort,
     }
 }
 

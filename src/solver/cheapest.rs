@@ -10,7 +10,8 @@
 //! a smaller estimate than the answer, the answer is the optimum; otherwise a run that was dropped may have
 //! stood for one that stays in the band, and the walks are taken again with the drift in the state.
 //!
-//! After the work of as many labels as the memory limit holds, a beam finds a run if it can. The last threshold at
+//! After the work that may be done, which is that of as many labels as the memory limit holds at most, a beam finds a run
+//! if it can. The last threshold at
 //! which nothing was found says how far from the optimum that may be. It is the work that is counted and not the labels
 //! that are left, so that the limit bounds the time as well.
 
@@ -354,9 +355,10 @@ impl<'p> Cheapest<'p> {
         };
     }
 
-    /// Effort at which the search is given up, in all walks together: that of as many labels as fit the memory.
+    /// Effort at which the search is given up, in all walks together: that of as many labels as fit the memory at most.
     fn effort_limit(&self, automaton: &Automaton<'_>) -> usize {
-        self.problem.memory_limit.saturating_sub(automaton.bytes()) / LABEL_BYTES
+        let fits = self.problem.memory_limit.saturating_sub(automaton.bytes()) / LABEL_BYTES;
+        fits.min(self.problem.effort_limit)
     }
 
     /// The best run that a beam finds, member by member.

@@ -185,6 +185,7 @@ mod tests {
             drift_limit: LIMIT,
             variety: None,
             memory_limit: 1 << 30,
+            effort_limit: usize::MAX,
         }
     }
 

@@ -45,6 +45,9 @@ pub struct Problem<'a> {
     pub variety: Option<Variety>,
     /// The memory that the search may take, in bytes. Beyond it, optimality is given up.
     pub memory_limit: usize,
+    /// The work that the search for the optimum may be, in partial runs that are looked at. Beyond it, optimality is given
+    /// up as well.
+    pub effort_limit: usize,
 }
 
 /// A sequence that meets all constraints.

@@ -83,6 +83,7 @@ impl Sample {
                 drift_limit: self.drift_limit,
                 variety: None,
                 memory_limit: self.memory_limit,
+                effort_limit: usize::MAX,
             };
             if let Some(runs) = Runs::new(&problem) {
                 return (problem, runs);
