@@ -93,6 +93,14 @@ pub(super) fn say_cuts(laser: Option<&LaserReport>) {
             }
         }
     }
+    if let Some(largest) = laser.filled_bays.first() {
+        let [x, y] = largest.position_mm;
+        say!(
+            "warning: the beam does not get into {} bay(s), which stay filled, the largest of {:.2} mm2 at ({x:.1}, {y:.1}) mm; scale the part up, or use a finer kerf",
+            laser.filled_bays.len(),
+            largest.area_mm2
+        );
+    }
     if laser.files.is_empty() {
         return;
     }

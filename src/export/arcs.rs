@@ -46,10 +46,8 @@ fn close_by_line(start: DVec2, segments: &mut Vec<Segment>, tolerance: Option<f6
     };
     let arc = Arc { from: before, to, bulge };
     let length = (8.0 * arc.radius() * THINNING * tolerance).sqrt();
-    let t = 1.0 - length / (arc.radius() * arc.turn().abs());
-    if t < 0.5 {
-        return;
-    }
+    // Of an arc so flat that most of it would do for a line, half stays an arc.
+    let t = (1.0 - length / (arc.radius() * arc.turn().abs())).max(0.5);
     let middle = rounding.round(arc.at(t), tolerance);
     if let Some(shorter) = rounded_arc(before, middle, (0.25 * t * arc.turn()).tan(), tolerance) {
         segments.pop();
@@ -293,6 +291,20 @@ mod tests {
             let Segment::Arc(to, bulge) = *segment else { panic!("{segment:?}") };
             assert!((Arc { from, to, bulge }.radius() - 30.0).abs() < 0.05);
         }
+    }
+
+    #[test]
+    fn contours_of_flat_arcs_end_in_a_line_too() {
+        // A cushion of 1.3 mm: each side rises by so much less than the chord error that half of it could be a line.
+        let (side, bulge) = (1.3, 0.03);
+        let corners = [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)].map(DVec2::from);
+        let arcs = (0..4).map(|i| Arc { from: corners[i], to: corners[(i + 1) % 4], bulge });
+        let outline =
+            fit(arcs.flat_map(|arc| (0..8).map(move |k| arc.at(f64::from(k) / 8.0))).collect(), 0.05);
+        let is_arc = |segment: &Segment| matches!(segment, Segment::Arc(..));
+        assert_eq!(outline.segments.iter().filter(|s| is_arc(s)).count(), 4, "{:?}", outline.segments);
+        let last = outline.segments[outline.segments.len() - 1];
+        assert_eq!(last, Segment::Line(outline.start), "readers miss the end of an arc by a rounding error");
     }
 
     #[test]

@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::ExportError;
 use super::canvas::{Canvas, INK, STRUT, check_pixels};
 use crate::fabricate::Bridge;
-use crate::planar::Region;
+use crate::planar::{Contour, Region};
 
 /// The longer side in pixels when nothing else is asked for.
 pub const DEFAULT_PIXELS: u32 = 1600;
@@ -14,9 +14,12 @@ const MARGIN: f64 = 0.04;
 /// Where pieces meet, and around what is narrow.
 const SEAM: [u8; 3] = [0x5b, 0xa7, 0xe0];
 const NARROW: [u8; 3] = [0xd6, 0x28, 0x39];
+/// What is engraved: light on the ink, as if burnt into it.
+const ENGRAVED: [u8; 3] = [0xf2, 0xc1, 0x4e];
 /// Widths of lines, as parts of the longer side of the picture.
 const SEAM_WIDTH: f64 = 0.0015;
 const NARROW_WIDTH: f64 = 0.0022;
+const ENGRAVED_WIDTH: f64 = 0.002;
 /// A ring around a narrow place has this many times its width, and at least this part of the longer side, as radius.
 const RING: f64 = 1.5;
 const LEAST_RING: f64 = 0.01;
@@ -28,6 +31,8 @@ pub struct Marks<'m> {
     pub bridges: &'m [Bridge],
     /// What falls out of the region when it is cut; orange.
     pub fallen: Option<&'m Region>,
+    /// What is engraved: its outlines, yellow.
+    pub engraved: Option<&'m Region>,
     /// Lines across the band where two pieces meet, in millimetres; light blue.
     pub seams_mm: &'m [Vec<DVec2>],
     /// Places that are narrow: the middle and the width, in millimetres; a red ring around each.
@@ -49,6 +54,15 @@ pub fn png(region: &Region, marks: &Marks<'_>, longer_side: u32) -> Result<Vec<u
         canvas.region(fallen, DVec2::ZERO, STRUT)?;
     }
     let pixels = f64::from(longer_side);
+    if let Some(engraved) = marks.engraved {
+        let grid = engraved.grid();
+        let around = |contour: &'_ Contour| {
+            let points = contour.points().iter().map(|&p| grid.to_mm(p)).collect::<Vec<_>>();
+            let first = points[0];
+            points.into_iter().chain([first])
+        };
+        canvas.lines(engraved.contours().map(around), ENGRAVED_WIDTH * pixels, ENGRAVED)?;
+    }
     let seams = marks.seams_mm.iter().map(|seam| seam.iter().copied());
     canvas.lines(seams, SEAM_WIDTH * pixels, SEAM)?;
     let scale = canvas.scale;
@@ -62,7 +76,7 @@ pub fn png(region: &Region, marks: &Marks<'_>, longer_side: u32) -> Result<Vec<u
 mod tests {
     use super::super::canvas::{PAPER, Seen, frame};
     use super::*;
-    use crate::planar::Grid;
+    use crate::planar::{FillRule, Grid, boxes};
 
     #[test]
     fn ink_is_dark_and_holes_are_paper() {
@@ -83,6 +97,15 @@ mod tests {
         let picture = Seen::new(&png(&frame(), &marks, 4000).unwrap());
         let has = |colour| picture.count(colour);
         assert!(has(SEAM) > 3000 && has(NARROW) > 400, "{} {}", has(SEAM), has(NARROW));
+    }
+
+    #[test]
+    fn what_is_engraved_is_outlined() {
+        let engraved = boxes(frame().grid().steps(1.0), FillRule::NonZero, &[(12, 15, 4, 30)]);
+        let marks = Marks { engraved: Some(&engraved), ..Marks::default() };
+        let picture = Seen::new(&png(&frame(), &marks, 2000).unwrap());
+        // 68 mm at 23 pixels to the millimetre, four pixels wide less their soft edges; filled it would be ten times as much.
+        assert!((3000..9000).contains(&picture.count(ENGRAVED)), "{}", picture.count(ENGRAVED));
     }
 
     #[test]

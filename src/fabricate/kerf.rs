@@ -149,7 +149,7 @@ fn reversed(contour: &Contour) -> Contour {
 }
 
 /// The points of `a` that are not in `b`.
-fn difference(a: &Region, b: &Region) -> Region {
+pub(super) fn difference(a: &Region, b: &Region) -> Region {
     let mut paths: Vec<Vec<GridPoint>> = a.contours().map(|c| c.points().to_vec()).collect();
     paths.extend(b.contours().map(|c| c.points().iter().rev().copied().collect()));
     Region::fill(a.grid(), &paths, FillRule::Positive)

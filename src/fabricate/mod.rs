@@ -8,13 +8,15 @@
 //!
 //! Before that, bridges may give the region other counts ([`bridge()`]), and what is too thin or too narrow for a machine
 //! ([`Process`]) may be mended ([`enforce()`]). For a beam instead of a printer, contours make room for the kerf
-//! ([`compensated`]), and the part lies on a plate or is carved out of it ([`on_sheet`], [`carved`]).
+//! ([`compensated`]), and the part lies on a plate or is carved out of it ([`on_sheet`], [`carved`]). What a machine will make nothing of is found
+//! before it does ([`filled_bays`], [`thin_everywhere`], [`smaller_than`]).
 //!
 //! Walls may be bevelled or sloped ([`raise()`]), the number of triangles limited ([`raise_within`]), and the part turned
 //! to fit a printer ([`Bed`]).
 //!
 //! Excluded: files, curved fronts. Nothing here knows how the region came to be.
 
+mod bays;
 mod bed;
 mod bridge;
 mod caps;
@@ -28,10 +30,12 @@ mod profile;
 mod raise;
 mod sheet;
 mod simplify;
+mod small;
 mod snap;
 mod solid;
 mod workshop;
 
+pub use bays::{FilledBay, filled_bays};
 pub use bed::Bed;
 pub use bridge::{Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts, bridge};
 pub use enforce::{Change, EnforceError, EnforceOptions, Enforced, TIP, enforce};
@@ -42,6 +46,7 @@ pub use process::{CUT_COLOUR, ENGRAVE_COLOUR, Process, table as process_table};
 pub use profile::Profile;
 pub use raise::raise;
 pub use sheet::{Carved, FallenPiece, SheetError, SheetSize, carved, on_sheet, plate, shift_onto};
+pub use small::{smaller_than, thin_everywhere};
 pub use snap::snapped_to_f32;
 pub use solid::{Shell, Solid, extrude};
 pub use workshop::{Workshop, WorkshopError};

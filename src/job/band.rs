@@ -20,6 +20,7 @@ use super::picture::Pictured;
 use super::plan::Plan;
 use super::print::{self, check_mesh};
 use super::report::{BandReport, InputReport};
+use super::small;
 use super::stage::{Clock, Stage};
 use super::ways::{Runs, ways, weighed, weighed_note};
 use crate::domain::{BandMap, CurveSpec, PlanarCurve};
@@ -349,11 +350,13 @@ impl Band {
                 }
                 Format::Png => {
                     let bridges = self.report.bridges.as_ref().map_or(&[][..], |b| &b.bridges);
+                    let engraved = cutting.as_ref().map(Cutting::engraved_on_part).transpose()?.flatten();
                     let part = Pictured {
                         region: &self.part.region,
                         bridges,
                         seams_mm: &self.part.seams_mm,
                         narrow_mm: &report.made.narrow_places.places_mm(),
+                        engraved: engraved.as_ref(),
                     };
                     let picture = clock.time(Stage::Png, || {
                         let make = || self.solid(&mut report.made.notes);
@@ -372,6 +375,9 @@ impl Band {
                 narrowest.width_mm
             ));
         }
+        let narrowest_mm = found.min_feature.map(|n| n.width_mm);
+        let lost = small::warnings(&self.part.region, &self.job.tolerances, outputs, narrowest_mm);
+        report.made.notes.extend(lost);
         report.made.laser = cutting.map(|cutting| cutting.report);
         report.made.bytes = sizes;
         report.made.certificate.seal([found.components, found.holes], digests);

@@ -14,6 +14,7 @@ use super::output::{Format, Output, Pending, Target, persist};
 use super::picture::{PictureOptions, Pictured};
 use super::print::{self, PrintOptions, check_mesh};
 use super::report::{InputReport, StageTime};
+use super::small;
 use super::stage::{Clock, Stage};
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
 use crate::export::{self, SvgOptions};
@@ -197,7 +198,14 @@ pub fn extrude(
             Format::Png => {
                 let laid: &[Bridge] = bridges.as_ref().map_or(&[], |report| &report.bridges);
                 let narrow_mm = narrow_places.places_mm();
-                let part = Pictured { region: &region, bridges: laid, seams_mm: &[], narrow_mm: &narrow_mm };
+                let engraved = cutting.as_ref().map(Cutting::engraved_on_part).transpose()?.flatten();
+                let part = Pictured {
+                    region: &region,
+                    bridges: laid,
+                    seams_mm: &[],
+                    narrow_mm: &narrow_mm,
+                    engraved: engraved.as_ref(),
+                };
                 let picture = clock.time(Stage::Png, || {
                     let make = || print.solid(&region, thickness_mm, tolerances.chord_mm(), &mut notes);
                     picture.png(&part, || print::raised(&mut raised, make))
@@ -208,6 +216,8 @@ pub fn extrude(
         };
         pending.push(item);
     }
+    let narrowest_mm = narrow_places.ink.first().map(|n| n.width_mm);
+    notes.extend(small::warnings(&region, tolerances, outputs, narrowest_mm));
     persist(pending, None)?;
     Ok(ExtrudeReport {
         schema_version: 1,

@@ -16,9 +16,9 @@ use super::output::{Format, Output, Pending};
 use super::report::InputReport;
 use super::stage::{Clock, Stage};
 use crate::export::{self, Curves, CutLines, CutNumbers, DxfVersion, Layer, LayerColours, Marks, SvgOptions};
-use crate::fabricate::{self, Counts, FallenPiece, SheetSize};
+use crate::fabricate::{self, Counts, FabricateError, FallenPiece, FilledBay, SheetSize};
 use crate::planar::{GridPoint, Region};
-use crate::verify::{self, CutReport, Expected};
+use crate::verify::{self, CutReport, Expected, Mismatch};
 
 /// A plate needs so much material around the part, in millimetres, or three kerfs if that is more. Less, and what is
 /// left of its edge breaks or burns away.
@@ -60,9 +60,10 @@ impl LaserOptions {
         self.cuts(format) || (format == Format::Png && self.carve)
     }
 
-    /// Whether one of the files is.
+    /// Whether one of the files is, or shows what is engraved.
     pub(super) fn is_needed(&self, outputs: &[Output]) -> bool {
-        outputs.iter().any(|output| self.makes(output.format()))
+        let shows = |format| format == Format::Png && self.engrave.is_some();
+        outputs.iter().any(|output| self.makes(output.format()) || shows(output.format()))
     }
 
     /// Refuses options that contradict each other or the outputs.
@@ -91,8 +92,9 @@ impl LaserOptions {
             ("--dxf-version", self.dxf_version != DxfVersion::default()),
         ];
         let none_cut = !outputs.iter().any(|output| self.cuts(output.format()));
-        // A picture of a sign shows its plate, and the kerf is tried on it; what is engraved is in cut files only.
-        let shows = |option| self.carve && option != "--engrave";
+        // A picture of a sign shows its plate, and the kerf is tried on it; any picture shows what is engraved.
+        let has_picture = outputs.iter().any(|output| output.format() == Format::Png);
+        let shows = |option| if option == "--engrave" { has_picture } else { self.carve };
         if let Some((option, _)) =
             given.into_iter().find(|&(option, is_given)| is_given && none_cut && !shows(option))
         {
@@ -123,6 +125,8 @@ pub struct LaserReport {
     pub holes: usize,
     /// When the part was carved out of a plate: the pieces of the plate that fall out.
     pub falls_out: Option<Vec<FallenPiece>>,
+    /// Bays of what is kept that the beam does not get into, so that they stay filled, the largest first.
+    pub filled_bays: Vec<FilledBay>,
     /// The drawing that is engraved, if there is one.
     pub engraved: Option<InputReport>,
     /// What cutting takes.
@@ -151,6 +155,9 @@ pub(super) struct Cutting {
     /// What is kept, and what of it falls out.
     kept: Region,
     fallen: Option<Region>,
+    engraved: Option<Region>,
+    /// How far the part was moved on its plate.
+    shift: DVec2,
     pub(super) report: LaserReport,
 }
 
@@ -178,6 +185,11 @@ impl Cutting {
             Some(kerf_mm) => fabricate::compensated(&kept, kerf_mm, curve_chord_mm)?,
             None => kept.clone(),
         };
+        let filled_bays = match options.kerf_mm {
+            Some(kerf_mm) => fabricate::filled_bays(&kept, &cut, kerf_mm, curve_chord_mm),
+            None => Ok(Vec::new()),
+        };
+        let filled_bays = filled_bays.map_err(FabricateError::from)?;
         let shift = options.sheet.map_or(DVec2::ZERO, |sheet| fabricate::shift_onto(part, sheet));
         let read = |file: &PathBuf| Engraving::read(file, chord_mm - curve_chord_mm);
         let engraving = options.engrave.as_ref().map(read).transpose()?;
@@ -194,7 +206,7 @@ impl Cutting {
         let by = GridPoint::new(margin(low.x), margin(low.y));
         let corner = cut.grid().to_mm(by);
         let page_mm = page_mm.max(high + curve_chord_mm) + corner;
-        let layers = [(Layer::Engrave, engraved), (Layer::Cut, Some(cut)), (Layer::Sheet, plate)];
+        let layers = [(Layer::Engrave, engraved.clone()), (Layer::Cut, Some(cut)), (Layer::Sheet, plate)];
         let layers = layers.map(|(layer, region)| (layer, region.map(|region| region.shifted(by))));
         let layers: Vec<_> =
             layers.iter().filter_map(|(layer, region)| Some((*layer, region.as_ref()?))).collect();
@@ -206,11 +218,20 @@ impl Cutting {
             components,
             holes,
             falls_out,
+            filled_bays,
             engraved: engraving.map(|engraving| engraving.input),
             numbers: lines.numbers(),
             files: Vec::new(),
         };
-        Ok(Self { options: options.clone(), lines, page_mm, chord_mm, description, kept, fallen, report })
+        let options = options.clone();
+        Ok(Self { options, lines, page_mm, chord_mm, description, kept, fallen, engraved, shift, report })
+    }
+
+    /// What is engraved, on the part's own page.
+    pub(super) fn engraved_on_part(&self) -> Result<Option<Region>, JobError> {
+        let moved = |region: &Region| region.placed(region.grid(), |p| p - self.shift);
+        let moved = self.engraved.as_ref().map(moved).transpose();
+        Ok(moved.map_err(FabricateError::from)?)
     }
 
     /// One output, which has passed, and its bytes.
@@ -221,7 +242,8 @@ impl Cutting {
     ) -> Result<(Pending, Vec<u8>), JobError> {
         let bytes = match output.format() {
             Format::Png => clock.time(Stage::Png, || {
-                let marks = Marks { fallen: self.fallen.as_ref(), ..Marks::default() };
+                let (fallen, engraved) = (self.fallen.as_ref(), self.engraved.as_ref());
+                let marks = Marks { fallen, engraved, ..Marks::default() };
                 export::png(&self.kept, &marks, export::DEFAULT_PIXELS)
             })?,
             Format::Svg => clock
@@ -267,6 +289,10 @@ impl Cutting {
             remedy: "; try a smaller --chord".to_owned(),
         };
         found.check(&expected).map_err(mismatch)?;
+        if let Some(first) = found.open_engraved.first() {
+            let count = found.open_engraved.len();
+            return Err(mismatch(Mismatch::Cuts { count, first: first.clone() }));
+        }
         if let Some(kerf_mm) = self.options.kerf_mm {
             // What the beam leaves of the file.
             let region = found.region.offset(-0.5 * kerf_mm, self.chord_mm * READ_PART);

@@ -53,6 +53,7 @@ mod recut;
 mod refusal;
 mod report;
 mod several;
+mod small;
 mod stage;
 mod ways;
 

@@ -68,6 +68,8 @@ pub(super) struct Pictured<'p> {
     pub(super) seams_mm: &'p [Vec<glam::DVec2>],
     /// The middle and the width of each.
     pub(super) narrow_mm: &'p [(glam::DVec2, f64)],
+    /// What is engraved, where the region is.
+    pub(super) engraved: Option<&'p Region>,
 }
 
 impl PictureOptions {
@@ -109,6 +111,7 @@ impl PictureOptions {
         let marks = Marks {
             bridges: if shows(Show::Bridges) { part.bridges } else { &[] },
             fallen: None,
+            engraved: part.engraved,
             seams_mm: if shows(Show::Seams) { part.seams_mm } else { &[] },
             narrow_mm: if shows(Show::Thin) { part.narrow_mm } else { &[] },
         };

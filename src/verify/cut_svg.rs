@@ -90,6 +90,21 @@ mod tests {
     }
 
     #[test]
+    fn what_is_engraved_is_closed_and_engraved_once_and_counts_nothing() {
+        let engraved =
+            |body: &str| read(&format!(r##"<g id="ENGRAVE" fill="none" stroke="#00f">{body}</g>{FRAME}"##));
+        let square = r#"<path d="M4 4L6 4L6 6L4 6Z"/>"#;
+        let sound = engraved(square);
+        assert_eq!((sound.components, sound.holes, sound.pierces, sound.faults.len()), (1, 1, 2, 0));
+        let open = engraved(r#"<path d="M4 4L6 4L6 6"/>"#);
+        assert!(matches!(open.open_engraved[..], [CutFault::Open { .. }]), "{:?}", open.open_engraved);
+        assert!(open.faults.is_empty() && open.to_string().contains("1 path(s) that do not close"), "{open}");
+        let twice = engraved(&format!("{square}{square}"));
+        assert!(twice.faults.iter().all(|f| matches!(f, CutFault::Doubled { is_engraved: true, .. })));
+        assert!(twice.faults.len() == 4 && twice.faults[0].to_string().contains("are engraved twice"));
+    }
+
+    #[test]
     fn files_of_others_are_lines_too() {
         let circle = r#"<circle cx="10" cy="10" r="5" style="fill:none;stroke:red;stroke-width:0.1"/>"#;
         let report = read_cut_svg(file("", circle).as_bytes(), 0.01).unwrap();

@@ -3,8 +3,8 @@
 //! A cutter follows lines and knows no areas, so a file of lines has to be right in more than its counts: every path
 //! closed, or closed by those that go on where it ends; nothing cut twice, as that burns; no crossings; and inner
 //! contours before outer ones, as a part that is loose moves. [`super::read_dxf`] and [`super::read_cut_svg`] hand
-//! their paths over to be judged here. Layers named `ENGRAVE` and `SHEET` are measured but cut nothing. Excluded:
-//! power, speed and kerf.
+//! their paths over to be judged here. Layers named `ENGRAVE` and `SHEET` are measured but cut nothing; what is engraved has
+//! to be engraved once, too, and what of it is open is told, as lines of letters may be. Excluded: power, speed and kerf.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -24,7 +24,8 @@ use crate::planar::{self, Contour, FillRule, Grid, GridPoint, Region};
 /// Ends of open paths that are no farther apart meet: files keep four decimals or more.
 const JOIN_MM: f64 = 1e-4;
 /// Layers that are not cut, in capitals.
-const UNCUT: [&str; 2] = ["ENGRAVE", "SHEET"];
+const UNCUT: [&str; 2] = [ENGRAVED, "SHEET"];
+const ENGRAVED: &str = "ENGRAVE";
 
 /// What a file of cut lines holds. Lengths are millimetres, y up; an SVG's from the page's lower left corner.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -53,6 +54,8 @@ pub struct CutReport {
     pub min_gap: Option<Narrowest>,
     /// What is not in order.
     pub faults: Vec<CutFault>,
+    /// Engraved paths that do not close: lines of letters need not, outlines of areas have to.
+    pub open_engraved: Vec<CutFault>,
     /// What could be read, but not with certainty.
     pub warnings: Vec<String>,
     /// The greatest distance between the file's curves and the polygons that were counted.
@@ -99,6 +102,8 @@ pub enum CutFault {
     },
     /// Two lines run along each other, so that the same cut is made twice.
     Doubled {
+        /// Whether the lines are engraved, and not cut.
+        is_engraved: bool,
         /// The middle of the stretch.
         #[serde(serialize_with = "super::json::point")]
         #[schemars(with = "[f64; 2]")]
@@ -133,8 +138,9 @@ impl fmt::Display for CutFault {
                 write!(f, "{element}: ")?;
                 ("a path has no area", position_mm)
             }
-            Self::Doubled { position_mm, length_mm } => {
-                write!(f, "{length_mm:.3} mm are cut twice: ")?;
+            Self::Doubled { is_engraved, position_mm, length_mm } => {
+                let done = if *is_engraved { "engraved" } else { "cut" };
+                write!(f, "{length_mm:.3} mm are {done} twice: ")?;
                 ("lines run along each other", position_mm)
             }
             Self::Crossing { position_mm } => ("contours cross or touch", position_mm),
@@ -169,16 +175,15 @@ pub(super) fn judge(
     chord_mm: f64,
 ) -> Result<CutReport, VerifyError> {
     let layers = layers(&paths);
-    let (paths, _): (Vec<_>, Vec<_>) = paths.into_iter().partition(|path| is_cut(&path.layer));
+    let (paths, uncut): (Vec<_>, Vec<_>) = paths.into_iter().partition(|path| is_cut(&path.layer));
     let grid = grid(&paths)?;
     let cut_length_mm = paths.iter().flat_map(|path| &path.stretches).map(Stretch::length_mm).sum();
-    let mut faults: Vec<CutFault> = Vec::new();
-    let stretches: Vec<&[Stretch]> = paths.iter().map(|path| path.stretches.as_slice()).collect();
-    faults.extend(
-        doubled(&stretches)
-            .into_iter()
-            .map(|(position_mm, length_mm)| CutFault::Doubled { position_mm, length_mm }),
-    );
+    let mut faults = twice(&paths, false);
+    let engraved = uncut.into_iter().filter(|path| path.layer.eq_ignore_ascii_case(ENGRAVED));
+    let engraved: Vec<CutPath> = engraved.collect();
+    faults.extend(twice(&engraved, true));
+    let mut open_engraved = Vec::new();
+    rings(engraved, chord_mm, &mut open_engraved);
     let rings = rings(paths, chord_mm, &mut faults);
     let mut contours = Vec::with_capacity(rings.len());
     for Ring { element, points } in &rings {
@@ -207,10 +212,18 @@ pub(super) fn judge(
         min_feature: widths.feature,
         min_gap: widths.gap,
         faults,
+        open_engraved,
         warnings,
         chord_mm,
         region,
     })
+}
+
+/// The lines that run along each other.
+fn twice(paths: &[CutPath], is_engraved: bool) -> Vec<CutFault> {
+    let stretches: Vec<&[Stretch]> = paths.iter().map(|path| path.stretches.as_slice()).collect();
+    let fault = |(position_mm, length_mm)| CutFault::Doubled { is_engraved, position_mm, length_mm };
+    doubled(&stretches).into_iter().map(fault).collect()
 }
 
 fn is_cut(layer: &str) -> bool {
@@ -362,6 +375,13 @@ impl fmt::Display for CutReport {
             }
         }
         self.warnings.iter().try_for_each(|warning| writeln!(f, "warning      {warning}"))?;
+        if let Some(first) = self.open_engraved.first() {
+            writeln!(
+                f,
+                "engraved     {} path(s) that do not close, first: {first}",
+                self.open_engraved.len()
+            )?;
+        }
         write!(f, "faults       {}", self.faults.len())?;
         self.faults.iter().take(super::shells::FAULTS_SHOWN).try_for_each(|fault| write!(f, "\n  {fault}"))
     }

@@ -1,0 +1,78 @@
+//! Parts that count, and that a machine will make nothing of: those that are thin everywhere, and those that are tiny.
+//!
+//! A printer fills outlines with lines as wide as its nozzle. A component in which no disc of that width fits gets no
+//! line at all, and slicers leave it out, some without a word. Excluded: thin places of what is wide elsewhere, which
+//! the room that judges files measures.
+
+use glam::DVec2;
+
+use crate::planar::{Contour, Part, Region};
+
+/// Chords of the erosion, as a part of the width: what is thinner than the width by less than that may be missed.
+const ARC_PART: f64 = 0.005;
+
+/// The middles of the boxes around those components of `region` that are nowhere as wide as `width_mm`.
+pub fn thin_everywhere(region: &Region, width_mm: f64) -> Vec<DVec2> {
+    let left = region.offset(-0.5 * width_mm, ARC_PART * width_mm);
+    let mut is_lost = vec![true; region.components()];
+    for piece in left.parts() {
+        let p = piece.exterior().points()[0];
+        let holds = |part: &Part| {
+            let (low, high) = part.exterior().bounds();
+            (low.x..=high.x).contains(&p.x)
+                && (low.y..=high.y).contains(&p.y)
+                && part.exterior().contains(p)
+                && !part.holes().iter().any(|hole| hole.contains(p))
+        };
+        if let Some(i) = region.parts().iter().position(holds) {
+            is_lost[i] = false;
+        }
+    }
+    let lost = region.parts().iter().zip(is_lost).filter(|(_, is_lost)| *is_lost);
+    lost.map(|(part, _)| middle(region, part.exterior())).collect()
+}
+
+/// The middles of the boxes around those components and holes of `region` whose outlines are around less than `area_mm2`.
+pub fn smaller_than(region: &Region, area_mm2: f64) -> Vec<DVec2> {
+    let grid = region.grid();
+    let tiny = region.contours().filter(|contour| contour.area_mm2(grid).abs() < area_mm2);
+    tiny.map(|contour| middle(region, contour)).collect()
+}
+
+fn middle(region: &Region, contour: &Contour) -> DVec2 {
+    let (low, high) = contour.bounds();
+    region.grid().to_mm(low).midpoint(region.grid().to_mm(high))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::planar::{FillRule, Grid, boxes};
+
+    /// Boxes with a corner and a size in tenths of a millimetre.
+    fn region(of: &[(i64, i64, i64, i64)]) -> Region {
+        boxes(Grid::for_extent(100.0).unwrap().steps(0.1), FillRule::EvenOdd, of)
+    }
+
+    #[test]
+    fn what_is_wide_somewhere_is_not_lost() {
+        // A thread, a thread with a knob, a frame of threads, and a plate.
+        let thread = (0, 0, 3, 100);
+        let frame = [(100, 0, 60, 60), (103, 3, 54, 54)];
+        let of = [thread, (20, 0, 3, 100), (23, 50, 4, 7), frame[0], frame[1], (200, 0, 50, 50)];
+        let lost = thin_everywhere(&region(&of), 0.4);
+        assert_eq!(lost.len(), 2, "{lost:?}");
+        assert!(
+            lost[0].distance(DVec2::new(0.15, 5.0)) < 1e-6 && lost[1].distance(DVec2::new(13.0, 3.0)) < 1e-6
+        );
+        assert!(thin_everywhere(&region(&of), 0.2).is_empty());
+    }
+
+    #[test]
+    fn tiny_parts_and_holes_are_found() {
+        let found =
+            smaller_than(&region(&[(0, 0, 50, 50), (10, 10, 1, 1), (100, 0, 1, 2), (120, 0, 2, 3)]), 0.025);
+        assert_eq!(found.len(), 2);
+        assert!(found[0].distance(DVec2::new(1.05, 1.05)) < 1e-6, "{found:?}");
+    }
+}
