@@ -13,7 +13,7 @@ use super::describe::describe;
 use super::error::JobError;
 use super::extrude::{file_name, name};
 use super::laser::Cutting;
-use super::making::{self, Quantities};
+use super::making::{self, Border, Quantities};
 use super::output::{Format, Output, Pending, Target, persist};
 use super::part::{Part, PartError};
 use super::picture::Pictured;
@@ -156,7 +156,7 @@ impl Band {
                 let inside = bridging::inside(map).map(|p| p + band.part.shift_mm);
                 clock.time(Stage::Bridge, || band.lay_bridges(width_mm, inside))?;
             }
-            band.enforce(clock)?;
+            band.enforce(Border::Round, clock)?;
             // A drawing that does not pass is left for `deliver` to tell of, which knows the name of its file.
             if let Err(JobError::Mismatch { mismatch, .. }) = band.pass(clock) {
                 is_fine_enough &= !matches!(mismatch, Mismatch::Components { .. } | Mismatch::Holes { .. });
@@ -230,12 +230,12 @@ impl Band {
     }
 
     /// Thickens what is too thin and widens what is too narrow, if that was asked for.
-    pub(super) fn enforce(&mut self, clock: &mut Clock<'_>) -> Result<(), JobError> {
+    pub(super) fn enforce(&mut self, border: Border, clock: &mut Clock<'_>) -> Result<(), JobError> {
         if !self.job.options.enforce {
             return Ok(());
         }
-        let made =
-            clock.time(Stage::Enforce, || making::enforced(&self.part.region, &self.job.tolerances))?;
+        let made = clock
+            .time(Stage::Enforce, || making::enforced(&self.part.region, &self.job.tolerances, border))?;
         let Some((region, enforced)) = made else { return Ok(()) };
         self.part.region = fabricate::snapped_to_f32(&region)?;
         let made = &mut self.report.made;

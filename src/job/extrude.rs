@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::bridging::{self, BridgesReport};
 use super::error::JobError;
 use super::laser::{Cutting, LaserOptions, LaserReport};
-use super::making::{self, EnforcedReport, Quantities};
+use super::making::{self, Border, EnforcedReport, Quantities};
 use super::output::{Format, Output, Pending, Target, persist};
 use super::picture::{PictureOptions, Pictured};
 use super::print::{self, PrintOptions, check_mesh};
@@ -141,7 +141,7 @@ pub fn extrude(
     let mut enforced = None;
     if enforce
         && let Some((mended, report)) =
-            clock.time(Stage::Enforce, || making::enforced(&region, tolerances))?
+            clock.time(Stage::Enforce, || making::enforced(&region, tolerances, Border::Straight))?
     {
         notes.push(report.note());
         (region, enforced) = (mended, Some(report));

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::error::JobError;
-use crate::fabricate::{self, Change, Counts, EnforceOptions, Material, MaterialReport};
+use crate::fabricate::{self, Change, Counts, EnforceOptions, Material, MaterialReport, PeriodicError};
 use crate::planar::{Region, Tolerances};
 use crate::verify::{self, NarrowPlaces};
 
@@ -29,20 +29,39 @@ pub struct EnforcedReport {
     pub before: NarrowPlaces,
 }
 
+/// What becomes of ink along the box around a part.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Border {
+    /// It stays round, and the part is pressed into its box.
+    Round,
+    /// It is straight: no point moves but where something is too narrow.
+    Straight,
+    /// It matches that of copies.
+    Tile,
+}
+
 /// The region with its minimum feature and gap enforced, and what was done; `None` when nothing was lacking.
 ///
 /// # Errors
-/// [`JobError::Enforce`] where there is no room.
+/// [`JobError::Enforce`] where there is no room, [`JobError::Refused`] where copies of a tile would not match.
 pub(super) fn enforced(
     region: &Region,
     tolerances: &Tolerances,
+    border: Border,
 ) -> Result<Option<(Region, EnforcedReport)>, JobError> {
     let options = EnforceOptions {
         min_feature_mm: tolerances.min_feature_mm(),
         min_gap_mm: tolerances.min_gap_mm(),
         chord_mm: tolerances.chord_mm(),
     };
-    let enforced = fabricate::enforce(region, &options)?;
+    let enforced = match border {
+        Border::Round => fabricate::enforce_in_box(region, &options)?,
+        Border::Straight => fabricate::enforce(region, &options)?,
+        Border::Tile => fabricate::enforce_tile(region, &options).map_err(|error| match error {
+            PeriodicError::Enforce(error) => JobError::from(error),
+            other => JobError::Refused(format!("--enforce: {other}; a larger --width needs less of it")),
+        })?,
+    };
     if enforced.region == *region {
         return Ok(None);
     }

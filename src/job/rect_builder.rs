@@ -78,14 +78,6 @@ impl RectBuilder {
                     .to_owned(),
             });
         }
-        if self.tile && band.options.enforce {
-            return Err(JobError::Option {
-                option: "--enforce",
-                found: "what is thickened along the sides of a --tile would not match its copies".to_owned(),
-                wanted: "leave out one of the two; a larger --width makes everything wider in proportion"
-                    .to_owned(),
-            });
-        }
         Ok(RectJob { band, size: self.size, tile: self.tile })
     }
 }

@@ -46,10 +46,10 @@ fn of_thin(lost: usize, of: usize, first: DVec2) -> String {
     let place = format!("({:.1}, {:.1}) mm", first.x, first.y);
     match lost == of {
         true => format!(
-            "{WARNING}all ink is thinner than a nozzle of {NOZZLE_MM} mm, and the print is empty{rest}"
+            "{WARNING}all ink is thinner than a nozzle of {NOZZLE_MM} mm, and little or nothing of it is printed{rest}"
         ),
         false => format!(
-            "{WARNING}{lost} of {of} components are nowhere as wide as a nozzle of {NOZZLE_MM} mm, the first at {place}, and are not printed{rest}"
+            "{WARNING}{lost} of {of} components are nowhere as wide as a nozzle of {NOZZLE_MM} mm, the first at {place}, and slicers leave them out{rest}"
         ),
     }
 }
@@ -70,7 +70,7 @@ mod tests {
         let printed = tell("a.stl", &none);
         assert_eq!(printed.len(), 1, "{printed:?}");
         assert!(printed[0].starts_with("warning: 2 of 3 components"), "{printed:?}");
-        assert!(printed[0].contains("(10.2, 2.5) mm"), "{printed:?}");
+        assert!(printed[0].contains("(10.1, 2.5) mm"), "{printed:?}");
         assert!(tell("a.dxf", &none).is_empty());
         let speck = boxes(step, FillRule::EvenOdd, &[(0, 0, 1, 9), (50, 0, 1, 1)]).offset(-0.01, 0.001);
         let told = warnings(&speck, &none, &[Output::file("a.3mf").unwrap()], Some(0.01));
