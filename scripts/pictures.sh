@@ -40,13 +40,18 @@ thin="$exemplars/strokes.svg --along line:40mm --width 6mm --show thin --pixels 
 band $exemplars/vine.svg --along circle:65mm --width 14mm --components 1 --closed-pattern --chamfer 0.3mm --view iso \
   --pixels 1200 -o $pictures/solid.png
 band $exemplars/lace.svg --along line:60mm --width 14mm --components 1 --show seams,thin -o $pictures/seams.png
-# Where the beam goes: its path in red, as wide as the kerf, over the part.
-kerf=0.8mm
-band $exemplars/meander.svg --along line:40mm --width 14mm -o "$row/part.svg"
+# Where the beam goes: its way in red, as wide as the kerf, with its middle, over the part.
+kerf=0.5mm
+band $exemplars/vine.svg --along line:34mm --width 16mm -o "$row/part.svg"
 "$openwork" extrude "$row/part.svg" --cut --kerf $kerf -o "$row/cut.svg" --quiet
+lines() { # WIDTH COLOUR OPACITY: the cut lines, drawn so
+  sed -n '/<g /,/<\/g>/p' "$row/cut.svg" \
+    | sed -E "s/stroke=\"[^\"]*\"/stroke=\"$2\"/; s/stroke-width=\"[^\"]*\"/stroke-width=\"$1\" stroke-opacity=\"$3\"/"
+}
 {
   sed '/<\/svg>/d; s/fill="#000"/fill="#22304e"/' "$row/part.svg"
-  sed -n '/<g /,/<\/g>/p' "$row/cut.svg" | sed -E "s/stroke-width=\"[^\"]*\"/stroke-width=\"${kerf%mm}\" stroke-opacity=\"0.6\"/"
+  lines "${kerf%mm}" "#ff5a4d" 0.65
+  lines 0.06 "#8f1212" 1
   echo '</svg>'
 } > "$row/kerf.svg"
-cargo run --release --locked --quiet --example contact_sheet -- $pictures/kerf.png 1 "$row/kerf.svg"
+cargo run --release --locked --quiet --example contact_sheet -- $pictures/kerf.png 1x1400 "$row/kerf.svg"

@@ -157,8 +157,24 @@ fn a_drawing_is_engraved_in_the_colours_of_the_process() {
     let wide = mine.replace("name.svg", "wide.svg");
     room.refuses(&format!("{wide} -o q.dxf"), 2, &["--engrave", "wide.svg", "no material", "at (15.0", "mm"]);
     room.refuses(&format!("{mine} -o q.stl"), 2, &["--engrave", "no output has cut lines"]);
+    // A picture shows it, on the part and on a sign.
+    for options in ["-o q.png", "--sheet 100x60mm -o q.png"] {
+        room.succeeds(&format!("{mine} {options}"));
+        assert!(pixels(&room.read("q.png"), [0xf2, 0xc1, 0x4e]) > 500, "{options}");
+    }
     room.refuses(&format!("{mine} --cut -o name.svg"), 2, &["name.svg", "is an input"]);
     room.refuses(&format!("{mine} --sheet 100x60mm --carve -o q.dxf"), 2, &["--engrave", "no material"]);
+}
+
+#[test]
+fn what_a_printer_leaves_out_is_told() {
+    let room = Room::with(&[]);
+    room.draw("thin.svg", "<path d='M5 5H25V25H5Z M30 5H50V5.3H30Z M30 10H30.05V10.05H30Z'/>");
+    let said = room.succeeds("extrude thin.svg -o thin.3mf");
+    assert!(said.stderr.contains("warning: 2 of 3 components are nowhere as wide"), "{}", said.stderr);
+    assert!(said.stderr.contains("warning: 1 component(s) or hole(s) are smaller"), "{}", said.stderr);
+    let said = room.succeeds("extrude thin.svg -o thin.dxf");
+    assert!(!said.stderr.contains("nozzle"), "{}", said.stderr);
 }
 
 #[test]

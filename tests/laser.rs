@@ -152,3 +152,33 @@ fn double_cuts_and_open_paths_of_others_are_found() {
         assert!(String::from_utf8_lossy(&finished.stdout).contains(word), "{name}");
     }
 }
+
+#[test]
+fn strands_much_thinner_than_the_chord_error_can_be_cut() {
+    let room = Room::with(&[]);
+    // Ink of 0.001 mm: chords of an eighth of the chord error would cross it.
+    room.draw(
+        "hair.svg",
+        "<path fill-rule='evenodd' d='M40 20A10 10 0 0 1 20 20A10 10 0 0 1 40 20ZM39.999 20A9.999 9.999 0 0 1 20.001 20A9.999 9.999 0 0 1 39.999 20Z'/>",
+    );
+    for options in ["-o hair.dxf", "--curves polyline -o hair.dxf", "--cut -o hair.svg.svg"] {
+        room.succeeds(&format!("extrude hair.svg --sheet 60x40mm --carve {options}"));
+    }
+}
+
+#[test]
+fn bays_that_the_beam_does_not_get_into_are_told() {
+    let room = Room::with(&[]);
+    // A slit of 0.1 mm from the side, and one of 0.4 mm.
+    room.draw("slit.svg", "<path d='M5 5H45V12H20V12.1H45V20H20V20.4H45V30H5Z'/>");
+    let said = room.succeeds("extrude slit.svg --kerf 0.2mm -o slit.dxf --json");
+    assert!(said.stderr.contains("does not get into 1 bay(s)"), "{}", said.stderr);
+    let report: Value = serde_json::from_slice(&said.stdout).unwrap();
+    let bay = &report["laser"]["filled_bays"][0];
+    assert!(
+        (number(bay, "area_mm2") - 2.5).abs() < 0.1 && (number(bay, "length_mm") - 25.0).abs() < 0.5,
+        "{bay}"
+    );
+    let said = room.succeeds("extrude slit.svg --kerf 0.08mm -o slit.dxf");
+    assert!(!said.stderr.contains("bay"), "{}", said.stderr);
+}

@@ -66,4 +66,6 @@ fn what_cannot_be_is_told() {
         3,
         &["there is no room for ink 0.4 mm"],
     );
+    let tile = "rect vine.svg --size 30x30mm --tile --process fdm-0.4 --enforce -o out.svg";
+    room.refuses(tile, 2, &["--tile", "would not match", "openwork extrude EXEMPLAR.svg"]);
 }

@@ -15,7 +15,7 @@ pub(super) struct LaserArgs {
     #[arg(long)]
     pub(super) cut: bool,
     /// Width that the beam burns away: outer contours go out and holes go in by half of it, so that the part has the drawn
-    /// size. A gap or feature narrower than it is an error [default: cuts run along the contours]
+    /// size. A gap or feature narrower than it is an error, a bay that stays filled a warning [default: cuts run along the contours]
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(super) kerf: Option<f64>,
     /// What cut lines are made of, within --chord: arcs (and lines), polyline (lines only) or spline (cubic curves)
@@ -32,7 +32,7 @@ pub(super) struct LaserArgs {
     #[arg(long)]
     pub(super) carve: bool,
     /// Engrave the outlines of this drawing on the part (SVG), on a layer of its own and before anything is cut. Its page is
-    /// the part's: what is drawn over the part's .svg is in its place. Refused where there is no material
+    /// the part's: what is drawn over the part's .svg is in its place. Refused where there is no material; a .png shows it in yellow
     #[arg(long, value_name = "FILE.svg")]
     pub(super) engrave: Option<PathBuf>,
 }

@@ -25,7 +25,8 @@ pub(super) struct MakeArgs {
     /// More processes and materials, or other numbers for those that are built in (TOML)
     #[arg(long, value_name = "FILE.toml")]
     processes: Option<PathBuf>,
-    /// Thicken ink below the minimum feature and widen gaps below the minimum gap, and nothing else
+    /// Thicken ink below the minimum feature and widen gaps below the minimum gap, and nothing else. Not with --tile, whose copies
+    /// would not match: enforce the exemplar with openwork extrude first
     #[arg(long)]
     pub(super) enforce: bool,
     /// The material, for the mass in the report: pla, petg, abs, resin, birch-ply, mdf, acrylic, silver-925, brass, steel,

@@ -3,7 +3,7 @@
 //! [`enforce`] never leaves the box around the ink, and what would is cut off straight: tips of leaves come out as if they had
 //! been filed down. So the ink is first left to grow as it likes; by as much as it leaves the box, the drawing is
 //! pressed together on that side, and grows again, into the box and not over it. Drawings become smaller so by half of what ink
-//! is thickened, which nobody sees. Excluded: rectangles and tiles, whose sides are straight as they are.
+//! is thickened, which nobody sees. Excluded: rectangles, whose sides are straight as they are.
 
 use glam::DVec2;
 
@@ -75,7 +75,7 @@ fn enforced_freely(region: &Region, options: &EnforceOptions) -> Result<Enforced
 
 /// The region with a frame of ink around the box, `away` steps from it and as many wide: a region never leaves the box around
 /// all of it.
-pub(super) fn framed(region: &Region, [low, high]: [GridPoint; 2], away: i64) -> Region {
+fn framed(region: &Region, [low, high]: [GridPoint; 2], away: i64) -> Region {
     let grid = region.grid();
     let around = |by: i64| {
         let (low, high) = (GridPoint::new(low.x - by, low.y - by), GridPoint::new(high.x + by, high.y + by));
@@ -128,10 +128,16 @@ mod tests {
         let middles = outer.edges().map(|(a, b)| grid.to_mm(a).midpoint(grid.to_mm(b)));
         let least = middles.map(|p| p.distance(DVec2::splat(20.0))).fold(f64::INFINITY, f64::min);
         assert!(least > 4.98, "{least}");
-        // Cut off at the box it would not be: its four sides are flat.
+        // Cut off at the box it would not be.
         let flat = enforce(&before, &OPTIONS).unwrap().region;
-        let longest = flat.parts()[0].exterior().edges().map(|(a, b)| grid.to_mm(a).distance(grid.to_mm(b)));
-        assert!(longest.fold(0.0, f64::max) > 0.5);
+        let at_top =
+            flat.parts()[0].exterior().points().iter().map(|&p| grid.to_mm(p)).filter(|p| p.y > 24.999);
+        let along_top: Vec<f64> = at_top.map(|p| p.x).collect();
+        let (least, most) = (
+            along_top.iter().copied().fold(f64::INFINITY, f64::min),
+            along_top.iter().copied().fold(0.0, f64::max),
+        );
+        assert!(most - least > 1.0, "{least} to {most}");
     }
 
     #[test]

@@ -7,7 +7,7 @@
 //! components and b1 holes becomes b0 shells of total genus b1.
 //!
 //! Before that, bridges may give the region other counts ([`bridge()`]), and what is too thin or too narrow for a machine
-//! ([`Process`]) may be mended ([`enforce_in_box`], and so that copies still match, [`enforce_tile`]). For a beam instead of a printer, contours make room for the kerf
+//! ([`Process`]) may be mended ([`enforce()`], [`enforce_in_box`]). For a beam instead of a printer, contours make room for the kerf
 //! ([`compensated`]), and the part lies on a plate or is carved out of it ([`on_sheet`], [`carved`]). What a machine will make nothing of is found
 //! before it does ([`filled_bays`], [`thin_everywhere`], [`smaller_than`]).
 //!
@@ -26,7 +26,6 @@ mod inset;
 mod kerf;
 mod limit;
 mod material;
-mod periodic;
 mod process;
 mod profile;
 mod raise;
@@ -45,7 +44,6 @@ pub use in_box::enforce_in_box;
 pub use kerf::{KerfError, check_kerf, compensated};
 pub use limit::{Limited, raise_within};
 pub use material::{Material, MaterialReport};
-pub use periodic::{PeriodicError, enforce_tile};
 pub use process::{CUT_COLOUR, ENGRAVE_COLOUR, Process, table as process_table};
 pub use profile::Profile;
 pub use raise::raise;

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::error::JobError;
-use crate::fabricate::{self, Change, Counts, EnforceOptions, Material, MaterialReport, PeriodicError};
+use crate::fabricate::{self, Change, Counts, EnforceOptions, Material, MaterialReport};
 use crate::planar::{Region, Tolerances};
 use crate::verify::{self, NarrowPlaces};
 
@@ -36,14 +36,12 @@ pub(super) enum Border {
     Round,
     /// It is straight: no point moves but where something is too narrow.
     Straight,
-    /// It matches that of copies.
-    Tile,
 }
 
 /// The region with its minimum feature and gap enforced, and what was done; `None` when nothing was lacking.
 ///
 /// # Errors
-/// [`JobError::Enforce`] where there is no room, [`JobError::Refused`] where copies of a tile would not match.
+/// [`JobError::Enforce`] where there is no room.
 pub(super) fn enforced(
     region: &Region,
     tolerances: &Tolerances,
@@ -57,10 +55,6 @@ pub(super) fn enforced(
     let enforced = match border {
         Border::Round => fabricate::enforce_in_box(region, &options)?,
         Border::Straight => fabricate::enforce(region, &options)?,
-        Border::Tile => fabricate::enforce_tile(region, &options).map_err(|error| match error {
-            PeriodicError::Enforce(error) => JobError::from(error),
-            other => JobError::Refused(format!("--enforce: {other}; a larger --width needs less of it")),
-        })?,
     };
     if enforced.region == *region {
         return Ok(None);

@@ -78,6 +78,14 @@ impl RectBuilder {
                     .to_owned(),
             });
         }
+        if self.tile && band.options.enforce {
+            return Err(JobError::Option {
+                option: "--enforce",
+                found: "what is thickened along the sides of a --tile would not match its copies".to_owned(),
+                wanted: "enforce the widths of the exemplar instead, as openwork extrude EXEMPLAR.svg --min-feature 1mm --enforce -o thick.svg, and make the tile of thick.svg; or take a larger --width"
+                    .to_owned(),
+            });
+        }
         Ok(RectJob { band, size: self.size, tile: self.tile })
     }
 }

@@ -172,7 +172,7 @@ impl Way {
         if let Some((width_mm, _)) = bridges {
             clock.time(Stage::Bridge, || band.lay_bridges(width_mm, None))?;
         }
-        band.enforce(if tile { Border::Tile } else { Border::Straight }, clock)?;
+        band.enforce(Border::Straight, clock)?;
         // What messages call the width of a band is the height of a row here.
         band.report.width_mm = strip.band.report.width_mm;
         // Ink that the machine cannot make may be thicker another way.

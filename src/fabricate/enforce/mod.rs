@@ -186,7 +186,7 @@ fn unchanged(region: &Region) -> Enforced {
 }
 
 /// What became of `before`.
-pub(super) fn changed(before: &Region, now: Region, options: &EnforceOptions) -> Enforced {
+fn changed(before: &Region, now: Region, options: &EnforceOptions) -> Enforced {
     if now == *before {
         return unchanged(before);
     }
