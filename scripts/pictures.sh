@@ -42,7 +42,7 @@ band $exemplars/vine.svg --along circle:65mm --width 14mm --components 1 --close
 band $exemplars/lace.svg --along line:60mm --width 14mm --components 1 --show seams,thin -o $pictures/seams.png
 # Where the beam goes: its way in red, as wide as the kerf, with its middle, over the part.
 kerf=0.5mm
-band $exemplars/vine.svg --along line:34mm --width 16mm -o "$row/part.svg"
+band $exemplars/vine.svg --along line:42mm --width 16mm -o "$row/part.svg"
 "$openwork" extrude "$row/part.svg" --cut --kerf $kerf -o "$row/cut.svg" --quiet
 lines() { # WIDTH COLOUR OPACITY: the cut lines, drawn so
   sed -n '/<g /,/<\/g>/p' "$row/cut.svg" \
