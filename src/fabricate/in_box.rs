@@ -98,7 +98,6 @@ fn without_frame(region: &Region) -> Region {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::verify::endures_erosion;
 
     const OPTIONS: EnforceOptions = EnforceOptions { min_feature_mm: 0.6, min_gap_mm: 0.3, chord_mm: 0.01 };
 
@@ -121,23 +120,14 @@ mod tests {
         let (low, high) = made.region.bounds_mm().unwrap();
         assert!((high - low - 10.0).abs().max_element() < 0.011, "{low} {high}");
         assert_eq!(Counts::of(&made.region), Counts::of(&before));
-        assert!(endures_erosion(&made.region, 0.295, 0.001) && made.added_mm2 > 5.0);
+        let eroded = made.region.offset(-0.295, 0.001);
+        assert!(Counts::of(&eroded) == Counts::of(&before) && made.added_mm2 > 5.0);
         // No flat sides: the outer contour is round everywhere.
         let outer = made.region.parts()[0].exterior();
         let grid = made.region.grid();
         let middles = outer.edges().map(|(a, b)| grid.to_mm(a).midpoint(grid.to_mm(b)));
         let least = middles.map(|p| p.distance(DVec2::splat(20.0))).fold(f64::INFINITY, f64::min);
         assert!(least > 4.98, "{least}");
-        // Cut off at the box it would not be.
-        let flat = enforce(&before, &OPTIONS).unwrap().region;
-        let at_top =
-            flat.parts()[0].exterior().points().iter().map(|&p| grid.to_mm(p)).filter(|p| p.y > 24.999);
-        let along_top: Vec<f64> = at_top.map(|p| p.x).collect();
-        let (least, most) = (
-            along_top.iter().copied().fold(f64::INFINITY, f64::min),
-            along_top.iter().copied().fold(0.0, f64::max),
-        );
-        assert!(most - least > 1.0, "{least} to {most}");
     }
 
     #[test]
