@@ -11,7 +11,7 @@
 #             "holes"); for an SVG of cut lines it gets --cutlines as well
 #   PYTHON    a Python with ezdxf, which audits every DXF (python3)
 #   SLICER    PrusaSlicer, which makes G-code of every STL and 3MF (prusa-slicer)
-#   DOMAINS   what to make, of "line circle rect" (all); the table has what OUT_DIR has of the others, too
+#   DOMAINS   what to make, of "line short circle rect" ("line circle rect"); the table has what OUT_DIR has of the others, too
 #   JOBS      runs at a time (2)
 set -euo pipefail
 if [ $# -lt 2 ]; then
@@ -110,6 +110,7 @@ one() { # EXEMPLAR DOMAIN: a row of the table
   if [ -e "$file.row" ]; then return 0; fi
   case $2 in
     line) made="band $1 --along line:240mm --width 14mm" plate=260x40mm ;;
+    short) made="band $1 --along line:100mm --width 14mm" plate=120x40mm ;;
     circle) made="band $1 --along circle:40mm --width 12mm" plate=80x80mm ;;
     rect) made="rect $1 --size 60x40mm" plate=80x60mm ;;
   esac
@@ -164,7 +165,7 @@ absent=
 [ -n "$slicer" ] || absent="$absent There was no PrusaSlicer."
 rows=$(
   for exemplar in $exemplars; do
-    for domain in line circle rect; do
+    for domain in line short circle rect; do
       row=$out/$(basename "$exemplar" .svg)-$domain.row
       if [ -e "$row" ]; then cat "$row"; fi
     done
@@ -173,7 +174,7 @@ rows=$(
 cat <<INTRO
 # What other people's programs say of the files
 
-Every exemplar along a line of 240 mm and round a circle of 40 mm and in a rectangle of 60 x 40 mm, at a chord error of 0.05 mm, with
+Exemplars along a line of 240 mm (*short*: 100 mm) and round a circle of 40 mm and in a rectangle of 60 x 40 mm, at a chord error of 0.05 mm, with
 whatever components and holes come out, 0.6 mm thick. All files were read again by Openwork before they had their names; then
 
 - *counted*: an independent program, built on other people's geometry libraries, finds the components and holes of the
@@ -185,7 +186,7 @@ whatever components and holes come out, 0.6 mm thick. All files were read again 
 - cut lines as SVG have a kerf of 0.1 mm; a gap or feature that is narrower than that is refused, with its place;
 - a sign is the pattern cut out of a plate that is larger by 10 mm or more on each side: how many pieces *fall out* stands in its report.
 
-Commands: \`COUNTER=... PYTHON=... scripts/makeable.sh OUT_DIR fixtures/exemplars/*.svg\`, and with all exemplars for the rest. Names with a
+Commands: \`COUNTER=... PYTHON=... scripts/makeable.sh OUT_DIR fixtures/exemplars/*.svg\`, and with other exemplars and \`DOMAINS\` for the rest. Names with a
 number are ornaments of TeX packages under the LPPL (pgfornament, pgfornament-han, niceframe), not kept in this repository; the
 others are in \`fixtures/exemplars\`.
 
