@@ -12,7 +12,7 @@ use super::laser::{Cutting, LaserOptions, LaserReport};
 use super::making::{self, EnforcedReport, Quantities};
 use super::output::{Format, Output, Pending, Target, persist};
 use super::picture::{PictureOptions, Pictured};
-use super::print::{self, PrintOptions, check_mesh};
+use super::print::{MeshFile, Meshes, PrintOptions};
 use super::report::{InputReport, StageTime};
 use super::stage::{Clock, Stage};
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
@@ -145,13 +145,26 @@ pub fn extrude(
         notes.push(report.note());
         (region, enforced) = (mended, Some(report));
     }
-    let narrow_places = clock.time(Stage::Verify, || making::worst_places(&region, tolerances));
-    check_widths(&region, tolerances, file, enforce)?;
     let expected = Expected {
         components: Some(region.components().into()),
         holes: Some(region.holes().into()),
         ..Expected::default()
     };
+    let raise =
+        |notes: &mut Vec<String>| print.solid(&region, thickness_mm, tolerances.chord_mm(), notes);
+    let document = print.document(file, None, Counts::of(&region));
+    // Neither needs the other.
+    let (narrow_places, meshes) = clock.both(
+        |clock| {
+            clock.time(Stage::Verify, || {
+                let narrow_places = making::worst_places(&region, tolerances);
+                check_widths(&region, tolerances, file, enforce).map(|()| narrow_places)
+            })
+        },
+        |clock| Meshes::new(outputs, &document, &expected, clock, raise),
+    );
+    let narrow_places = narrow_places?;
+    let mut meshes = meshes?;
     let mut cutting = match laser.is_needed(outputs) {
         true => {
             let page_mm = DVec2::from(drawing.page_mm());
@@ -162,7 +175,7 @@ pub fn extrude(
         }
         false => None,
     };
-    let (mut raised, mut solid, mut drawn) = (None, None, None);
+    let (mut solid, mut drawn) = (None, None);
     let mut pending = Vec::with_capacity(outputs.len());
     let mut sizes = Vec::with_capacity(outputs.len());
     for output in outputs {
@@ -175,15 +188,10 @@ pub fn extrude(
         }
         let item = match output.format() {
             Format::Dxf => unreachable!("a DXF has cut lines"),
-            format @ (Format::Stl | Format::Threemf | Format::Obj) => {
-                let bytes = clock.time(Stage::Stl, || {
-                    let make = || print.solid(&region, thickness_mm, tolerances.chord_mm(), &mut notes);
-                    let solid = print::raised(&mut raised, make)?;
-                    print::mesh(format, solid, &print.document(file, None, Counts::of(&region)))
-                })?;
+            Format::Stl | Format::Threemf | Format::Obj => {
+                let MeshFile { item, bytes, found } = meshes.next();
                 sizes.push(bytes.len());
-                let item = Pending::new(target, bytes)?;
-                solid = Some(clock.time(Stage::Verify, || check_mesh(output, &item, &expected))?);
+                solid = Some(found);
                 item
             }
             Format::Svg => {
@@ -198,16 +206,14 @@ pub fn extrude(
                 let laid: &[Bridge] = bridges.as_ref().map_or(&[], |report| &report.bridges);
                 let narrow_mm = narrow_places.places_mm();
                 let part = Pictured { region: &region, bridges: laid, seams_mm: &[], narrow_mm: &narrow_mm };
-                let picture = clock.time(Stage::Png, || {
-                    let make = || print.solid(&region, thickness_mm, tolerances.chord_mm(), &mut notes);
-                    picture.png(&part, || print::raised(&mut raised, make))
-                })?;
+                let picture = clock.time(Stage::Png, || picture.png(&part, || meshes.solid(raise)))?;
                 sizes.push(picture.len());
                 Pending::new(target, picture)?
             }
         };
         pending.push(item);
     }
+    notes.append(&mut meshes.notes);
     persist(pending, None)?;
     Ok(ExtrudeReport {
         schema_version: 1,

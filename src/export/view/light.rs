@@ -4,10 +4,13 @@
 //! picture of its own, and what share of the sky a point sees is how many of them it is nearest in. That gives the
 //! soft shade in corners and under a part that tells a person what lies above what.
 
+use std::num::NonZero;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use glam::{DVec2, DVec3};
 
 use super::camera::{Camera, Raster};
-use super::depth::Depths;
+use super::depth::draw;
 
 /// Cells along the longer side of a depth picture.
 const CELLS: usize = 1400;
@@ -46,47 +49,85 @@ pub(super) struct Place {
     pub(super) normal: DVec3,
 }
 
-/// The light at every place of a scene made of `triangles`.
+/// The light at every place of a scene made of `triangles`. The same whatever the number of threads that look for it.
 pub(super) fn light(triangles: &[[DVec3; 3]], places: &[Place]) -> Vec<Light> {
-    let mut light = vec![Light::default(); places.len()];
-    let lamp = lamp().map(|direction| (direction, true));
-    for (direction, is_lamp) in lamp.chain(sky().map(|direction| (direction, false))) {
-        let depths = Depths::seen_from(triangles, direction);
-        let lift = LIFT / depths.1.raster.scale;
-        for (place, light) in places.iter().zip(&mut light) {
-            let angle = place.normal.dot(direction) as f32;
+    let directions: Vec<DVec3> = lamp().chain(sky()).collect();
+    let threads = std::thread::available_parallelism().map_or(1, NonZero::get).min(directions.len());
+    let next = AtomicUsize::new(0);
+    let lit: Vec<Vec<Lit>> = std::thread::scope(|scope| {
+        let look = || lit_from(triangles, places, &directions, &next);
+        let others: Vec<_> = (1..threads).map(|_| scope.spawn(look)).collect();
+        let own = look();
+        let others =
+            others.into_iter().map(|other| other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+        std::iter::once(own).chain(others).collect()
+    });
+    let light = |(number, place): (usize, &Place)| {
+        let lit = lit.iter().fold(0, |all, lit| all | lit[number]);
+        Light::of(place, lit, &directions)
+    };
+    places.iter().enumerate().map(light).collect()
+}
+
+/// From which directions light reaches a place: a bit for each, the lamp first.
+type Lit = u32;
+
+impl Light {
+    fn of(place: &Place, lit: Lit, directions: &[DVec3]) -> Self {
+        let mut light = Self::default();
+        for (number, direction) in directions.iter().enumerate() {
+            let angle = place.normal.dot(*direction) as f32;
             if angle <= 0.0 {
                 continue;
             }
-            let is_lit = is_lit(&depths, place.at + lift * (place.normal + direction), lift);
-            match is_lamp {
-                true => light.lamp += f32::from(u8::from(is_lit)) * angle / LAMP as f32,
-                false => {
-                    light.sky += f32::from(u8::from(is_lit)) * angle;
-                    light.open_sky += angle;
-                }
+            let falls = if lit >> number & 1 == 1 { angle } else { 0.0 };
+            if number < LAMP {
+                light.lamp += falls / LAMP as f32;
+            } else {
+                light.sky += falls;
+                light.open_sky += angle;
             }
         }
+        light
     }
-    light
 }
 
-fn is_lit((camera, depths): &(Camera, Depths), at: DVec3, lift: f64) -> bool {
-    let seen = camera.of(at);
-    let cell = depths.raster.cell(seen.truncate());
-    cell.is_none_or(|cell| f64::from(depths.nearest[cell]) <= seen.z + lift)
+/// Looks along one direction after the other, as long as nobody else does.
+fn lit_from(
+    triangles: &[[DVec3; 3]],
+    places: &[Place],
+    directions: &[DVec3],
+    next: &AtomicUsize,
+) -> Vec<Lit> {
+    let mut lit: Vec<Lit> = vec![0; places.len()];
+    let mut nearest = Vec::new();
+    loop {
+        let number = next.fetch_add(1, Ordering::Relaxed);
+        let Some(&direction) = directions.get(number) else { return lit };
+        let (camera, raster) = seen_from(triangles, direction);
+        nearest.clear();
+        nearest.resize(raster.cells(), f32::NEG_INFINITY);
+        draw(triangles, &camera, &raster, |cell, z, _| nearest[cell] = nearest[cell].max(z));
+        let lift = LIFT / raster.scale;
+        for (place, lit) in places.iter().zip(&mut lit) {
+            if place.normal.dot(direction) as f32 <= 0.0 {
+                continue;
+            }
+            let seen = camera.of(place.at + lift * (place.normal + direction));
+            let cell = raster.cell(seen.truncate());
+            let is_lit = cell.is_none_or(|cell| f64::from(nearest[cell]) <= seen.z + lift);
+            *lit |= Lit::from(is_lit) << number;
+        }
+    }
 }
 
-impl Depths {
-    /// The scene as the light sees it, with the frame of that.
-    fn seen_from(triangles: &[[DVec3; 3]], direction: DVec3) -> (Camera, Self) {
-        let camera = Camera::of_light(direction);
-        let flat = triangles.iter().flatten().map(|&p| camera.of(p).truncate());
-        let (low, high) =
-            flat.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
-        let raster = Raster::new(low, high, CELLS);
-        (camera, Self::new(triangles, &camera, raster))
-    }
+/// The frame in which light from a direction sees the scene.
+fn seen_from(triangles: &[[DVec3; 3]], direction: DVec3) -> (Camera, Raster) {
+    let camera = Camera::of_light(direction);
+    let flat = triangles.iter().flatten().map(|&p| camera.of(p).truncate());
+    let (low, high) =
+        flat.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+    (camera, Raster::new(low, high, CELLS))
 }
 
 /// Directions spread evenly over the half of the sphere that looks up, none of them level.
