@@ -288,7 +288,11 @@ impl Band {
         // The solid knows nothing of the drawing.
         let (drawn, meshes) = clock.both(
             |clock| self.drawn.clone().map_or_else(|| self.drawn(clock), Ok),
-            |clock| Meshes::new(outputs, &self.document(), &expected, clock, |notes| self.solid(notes)),
+            |clock| {
+                let is_shown = self.job.options.picture.view.is_some();
+                let make = |notes: &mut Vec<String>| self.solid(notes);
+                Meshes::new(outputs, is_shown, &self.document(), &expected, clock, make)
+            },
         );
         let Drawn { drawing, found } = drawn.map_err(|error| match error {
             JobError::Mismatch { mismatch, remedy, .. } => {

@@ -150,8 +150,7 @@ pub fn extrude(
         holes: Some(region.holes().into()),
         ..Expected::default()
     };
-    let raise =
-        |notes: &mut Vec<String>| print.solid(&region, thickness_mm, tolerances.chord_mm(), notes);
+    let raise = |notes: &mut Vec<String>| print.solid(&region, thickness_mm, tolerances.chord_mm(), notes);
     let document = print.document(file, None, Counts::of(&region));
     // Neither needs the other.
     let (narrow_places, meshes) = clock.both(
@@ -161,7 +160,7 @@ pub fn extrude(
                 check_widths(&region, tolerances, file, enforce).map(|()| narrow_places)
             })
         },
-        |clock| Meshes::new(outputs, &document, &expected, clock, raise),
+        |clock| Meshes::new(outputs, picture.view.is_some(), &document, &expected, clock, raise),
     );
     let narrow_places = narrow_places?;
     let mut meshes = meshes?;

@@ -135,12 +135,14 @@ pub(super) struct MeshFile {
 }
 
 impl Meshes {
-    /// Those of `outputs` that hold a solid, each written, read again and held against the plan.
+    /// Those of `outputs` that hold a solid, each written, read again and held against the plan. A solid that will be shown is
+    /// made without any.
     ///
     /// # Errors
     /// [`JobError`] when the solid cannot be made, and of the first file that cannot be written or does not pass.
     pub(super) fn new(
         outputs: &[Output],
+        is_shown: bool,
         document: &MeshDocument,
         expected: &Expected,
         clock: &mut Clock<'_>,
@@ -148,7 +150,7 @@ impl Meshes {
     ) -> Result<Self, JobError> {
         let mut meshes = Self::default();
         let mut outputs = outputs.iter().filter(|output| output.format().is_solid()).peekable();
-        if outputs.peek().is_none() {
+        if outputs.peek().is_none() && !is_shown {
             return Ok(meshes);
         }
         let solid = clock.time(Stage::Stl, || make(&mut meshes.notes))?;

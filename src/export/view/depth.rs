@@ -19,10 +19,8 @@ pub(super) struct Depths {
 impl Depths {
     /// The triangles as they are seen in the window of a frame.
     pub(super) fn new(triangles: &[[DVec3; 3]], camera: &Camera, raster: Raster) -> Self {
-        let mut depths = Self {
-            nearest: vec![f32::NEG_INFINITY; raster.cells()],
-            triangles: vec![NONE; raster.cells()],
-        };
+        let mut depths =
+            Self { nearest: vec![f32::NEG_INFINITY; raster.cells()], triangles: vec![NONE; raster.cells()] };
         draw(triangles, camera, &raster, |cell, z, number| {
             if z > depths.nearest[cell] {
                 depths.nearest[cell] = z;
