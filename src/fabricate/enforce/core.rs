@@ -11,7 +11,7 @@
 use glam::DVec2;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
-use crate::planar::{EdgeIndex, Region, Sets};
+use crate::planar::{EdgeIndex, IndexedEdge, Region, Sets};
 
 /// A middle of an edge is no better than half of its length, and good from this part on.
 const CENTRED: f64 = 0.45;
@@ -26,7 +26,8 @@ const MOST_POINTS: f64 = 10_000.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Node {
     pub(super) at: DVec2,
-    /// How far it is from the nearest contour, in millimetres: half of the width here. Zero at the end of a tip.
+    /// How far it is from the nearest contour, in millimetres: half of the width here, up to [`Fineness::hold`]. Zero at the
+    /// end of a tip.
     pub(super) radius: f64,
     /// The least node that it hangs together with.
     pub(super) part: usize,
@@ -65,10 +66,11 @@ pub(super) fn cores(region: &Region, index: &EdgeIndex, fineness: &Fineness) -> 
         let side = side_of(ink[face.index()]);
         let ends = edge.positions().map(|p| DVec2::new(p.x, p.y));
         crossing[edge.index()] =
-            cores[side].add(index, widest(index, ends, [fineness.enough[side], fineness.hold[side]]));
+            cores[side].add(widest(index, ends, [fineness.enough[side], fineness.hold[side]]));
     }
     for face in mesh.inner_faces() {
-        let core = &mut cores[side_of(ink[face.index()])];
+        let side = side_of(ink[face.index()]);
+        let core = &mut cores[side];
         let edges = face.adjacent_edges().map(|edge| edge.as_undirected());
         let open: Vec<usize> =
             edges.iter().filter(|e| !e.is_constraint_edge()).map(|e| crossing[e.index()]).collect();
@@ -80,17 +82,17 @@ pub(super) fn cores(region: &Region, index: &EdgeIndex, fineness: &Fineness) -> 
                 let open = edges.iter().find(|e| !e.is_constraint_edge()).expect("there is one");
                 let ends = open.positions().map(|p| DVec2::new(p.x, p.y));
                 let tip = corners.into_iter().find(|c| !ends.contains(c)).unwrap_or(corners[0]);
-                let end = core.add(index, tip);
+                let end = core.add(Found { at: tip, radius: 0.0 });
                 core.links.push([a, end]);
             }
             // Ways meet in the middle, or where one of them crosses its edge if that is wider: a triangle with a corner
             // in a notch has its middle near the notch.
             _ => {
-                let middle = middle(corners);
-                let wider = open.iter().copied().filter(|&a| core.nodes[a].radius > radius(index, middle));
+                let middle = Found::new(index, middle(corners), fineness.hold[side]);
+                let wider = open.iter().copied().filter(|&a| core.nodes[a].radius > middle.radius);
                 let widest =
                     wider.reduce(|a, b| if core.nodes[b].radius > core.nodes[a].radius { b } else { a });
-                let meet = widest.unwrap_or_else(|| core.add(index, middle));
+                let meet = widest.unwrap_or_else(|| core.add(middle));
                 core.links.extend(open.iter().filter(|&&a| a != meet).map(|&a| [a, meet]));
             }
         }
@@ -100,8 +102,8 @@ pub(super) fn cores(region: &Region, index: &EdgeIndex, fineness: &Fineness) -> 
 }
 
 impl Core {
-    fn add(&mut self, index: &EdgeIndex, at: DVec2) -> usize {
-        self.nodes.push(Node { at, radius: radius(index, at), part: usize::MAX });
+    fn add(&mut self, Found { at, radius }: Found) -> usize {
+        self.nodes.push(Node { at, radius, part: usize::MAX });
         self.nodes.len() - 1
     }
 
@@ -126,6 +128,20 @@ impl Core {
     }
 }
 
+/// A point with its distance to the nearest contour, up to what need not be measured.
+#[derive(Debug, Clone, Copy)]
+struct Found {
+    at: DVec2,
+    radius: f64,
+}
+
+impl Found {
+    fn new(index: &EdgeIndex, at: DVec2, hold: f64) -> Self {
+        let radius = |edge: &IndexedEdge| edge.nearest(at).distance(at).min(hold);
+        Self { at, radius: index.nearest_within(at, hold).map_or(hold, radius) }
+    }
+}
+
 /// The distance to the nearest contour.
 pub(super) fn radius(index: &EdgeIndex, at: DVec2) -> f64 {
     index.nearest(at).map_or(f64::INFINITY, |edge| edge.nearest(at).distance(at))
@@ -133,20 +149,20 @@ pub(super) fn radius(index: &EdgeIndex, at: DVec2) -> f64 {
 
 /// The point where an edge of the triangulation is crossed: its middle if that is as wide as matters or as can be, or
 /// else the point farthest from all contours. An edge shorter than what is wide enough is narrow wherever it is crossed.
-fn widest(index: &EdgeIndex, [a, b]: [DVec2; 2], [enough, hold]: [f64; 2]) -> DVec2 {
-    let (middle, length) = (a.midpoint(b), a.distance(b));
-    if length < 2.0 * enough || radius(index, middle) >= hold.min(CENTRED * length) {
+fn widest(index: &EdgeIndex, [a, b]: [DVec2; 2], [enough, hold]: [f64; 2]) -> Found {
+    let (middle, length) = (Found::new(index, a.midpoint(b), hold), a.distance(b));
+    if length < 2.0 * enough || middle.radius >= hold.min(CENTRED * length) {
         return middle;
     }
-    let at = |t: f64| (radius(index, a.lerp(b, t)), t);
-    let higher = |x: (f64, f64), y: (f64, f64)| if y.0 > x.0 { y } else { x };
+    let at = |t: f64| (Found::new(index, a.lerp(b, t), hold), t);
+    let higher = |x: (Found, f64), y: (Found, f64)| if y.0.radius > x.0.radius { y } else { x };
     let mut step = 1.0 / (SAMPLES + 1) as f64;
     let mut best = (1..=SAMPLES).map(|i| at(i as f64 * step)).fold(at(0.5), higher);
     for _ in 0..LOOKS {
         step *= 0.5;
         best = higher(higher(best, at(best.1 - step)), at(best.1 + step));
     }
-    a.lerp(b, best.1)
+    best.0
 }
 
 /// The circumcentre of a triangle if it is inside, or else the centroid.
