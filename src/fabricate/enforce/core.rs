@@ -8,6 +8,8 @@
 //!
 //! Excluded: what is too narrow ([`super::keep`]), and what becomes of it ([`super::grow`]).
 
+use std::num::NonZero;
+
 use glam::DVec2;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
@@ -19,6 +21,8 @@ const CENTRED: f64 = 0.45;
 const SAMPLES: usize = 15;
 /// Finer looks around the best of them, each at half the distance.
 const LOOKS: usize = 6;
+/// Fewer edges than that are not worth a thread.
+const LEAST_SHARE: usize = 1000;
 /// The most points that one edge of a contour is divided by.
 const MOST_POINTS: f64 = 10_000.0;
 
@@ -61,12 +65,15 @@ pub(super) fn cores(region: &Region, index: &EdgeIndex, fineness: &Fineness) -> 
     let mut cores = [Core::default(), Core::default()];
     let side_of = |is_ink: bool| usize::from(!is_ink);
     let mut crossing = vec![usize::MAX; mesh.num_undirected_edges()];
-    for edge in mesh.undirected_edges().filter(|edge| !edge.is_constraint_edge()) {
-        let Some(face) = edge.as_directed().face().as_inner() else { continue };
-        let side = side_of(ink[face.index()]);
+    let crossed = mesh.undirected_edges().filter(|edge| !edge.is_constraint_edge()).filter_map(|edge| {
+        let face = edge.as_directed().face().as_inner()?;
         let ends = edge.positions().map(|p| DVec2::new(p.x, p.y));
-        crossing[edge.index()] =
-            cores[side].add(widest(index, ends, [fineness.enough[side], fineness.hold[side]]));
+        Some((edge.index(), side_of(ink[face.index()]), ends))
+    });
+    let crossed: Vec<(usize, usize, [DVec2; 2])> = crossed.collect();
+    let find = |&(_, side, ends): &_| widest(index, ends, [fineness.enough[side], fineness.hold[side]]);
+    for (&(edge, side, _), found) in crossed.iter().zip(on_all_cores(&crossed, find)) {
+        crossing[edge] = cores[side].add(found);
     }
     for face in mesh.inner_faces() {
         let side = side_of(ink[face.index()]);
@@ -99,6 +106,24 @@ pub(super) fn cores(region: &Region, index: &EdgeIndex, fineness: &Fineness) -> 
     }
     cores.iter_mut().for_each(Core::find_parts);
     cores
+}
+
+/// What `work` gives for each of `items`, in their order.
+fn on_all_cores<T: Sync, U: Send>(items: &[T], work: impl Fn(&T) -> U + Sync) -> Vec<U> {
+    let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
+    let share = items.len().div_ceil(threads).max(LEAST_SHARE);
+    let work = |items: &[T]| items.iter().map(&work).collect::<Vec<U>>();
+    std::thread::scope(|scope| {
+        let work = &work;
+        let mut shares = items.chunks(share);
+        let own = shares.next().unwrap_or_default();
+        let others: Vec<_> = shares.map(|items| scope.spawn(move || work(items))).collect();
+        let mut done = work(own);
+        for other in others {
+            done.extend(other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+        }
+        done
+    })
 }
 
 impl Core {
@@ -155,12 +180,32 @@ fn widest(index: &EdgeIndex, [a, b]: [DVec2; 2], [enough, hold]: [f64; 2]) -> Fo
         return middle;
     }
     let at = |t: f64| (Found::new(index, a.lerp(b, t), hold), t);
-    let higher = |x: (Found, f64), y: (Found, f64)| if y.0.radius > x.0.radius { y } else { x };
     let mut step = 1.0 / (SAMPLES + 1) as f64;
-    let mut best = (1..=SAMPLES).map(|i| at(i as f64 * step)).fold(at(0.5), higher);
+    let mut best = (middle, 0.5);
+    // From an end, and from one point to the next, the distance to the contours rises by no more than the way.
+    let mut last = (0.0, 0.0);
+    for t in (1..=SAMPLES).map(|i| i as f64 * step) {
+        let most = (last.0 + (t - last.1) * length).min((1.0 - t) * length);
+        if most > best.0.radius {
+            let found = at(t);
+            last = (found.0.radius, t);
+            if found.0.radius > best.0.radius {
+                best = found;
+            }
+        }
+    }
     for _ in 0..LOOKS {
         step *= 0.5;
-        best = higher(higher(best, at(best.1 - step)), at(best.1 + step));
+        for t in [best.1 - step, best.1 + step] {
+            // As wide as matters.
+            if best.0.radius >= hold {
+                return best.0;
+            }
+            let found = at(t);
+            if found.0.radius > best.0.radius {
+                best = found;
+            }
+        }
     }
     best.0
 }
