@@ -241,7 +241,11 @@ mod tests {
         let vertices: Vec<GridPoint> = part.contours().flat_map(|c| c.points()).copied().collect();
         let sorted = |mut triangles: Vec<[u32; 3]>| {
             // From the least corner on.
-            triangles.iter_mut().for_each(|t| t.rotate_left((0..3).min_by_key(|&k| t[k]).unwrap()));
+            for t in &mut triangles {
+                let [a, b, c] = *t;
+                let least = if a < b && a < c { 0 } else { 1 + usize::from(c < b) };
+                t.rotate_left(least);
+            }
             triangles.sort_unstable();
             triangles
         };
