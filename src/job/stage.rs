@@ -90,8 +90,8 @@ impl<'a> Clock<'a> {
         result
     }
 
-    /// Runs `work`, and on another thread `beside`, which tells nobody of its stages. Both times count, so that stages may add up to more
-    /// than the whole took.
+    /// Runs `work`, and on another thread `beside`, which tells nobody of its stages. Both times count, so that stages may
+    /// add up to more than the whole took.
     pub(super) fn both<T, U: Send>(
         &mut self,
         work: impl FnOnce(&mut Self) -> T,

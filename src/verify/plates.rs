@@ -2,10 +2,11 @@
 //!
 //! The caps of a part are of many long thin facets, whose boxes meet by the hundred for each. But facets that are level,
 //! equally high and all turned the same way lie over a point as often as their *border* winds round it: the sides that
-//! only one of them has, while all others are of two, once in each direction. So a border is looked at instead. It has to
-//! be of loops, one through a vertex, that do not meet, and that wind round no point more than once. Then facets overlap nowhere,
-//! and neither can a corner rest on the side of another facet: inside of the plate there would be facets on both sides
-//! of it, and on the border the corner would have a loop or facets all around. So they share corners, sides, or nothing.
+//! only one of them has, while all others are of two, once in each direction. So a border is looked at instead. It has
+//! to be of loops, one through a vertex, that do not meet, and that wind round no point more than once. Then facets
+//! overlap nowhere, and neither can a corner rest on the side of another facet: inside of the plate there would be facets
+//! on both sides of it, and on the border the corner would have a loop or facets all around. So they share corners,
+//! sides, or nothing.
 //!
 //! A facet that comes to the height of a plate from above or below only, and in no more than a corner or a side that the
 //! plate has too, shares that with facets of the plate and nothing else. That holds for all walls of a part, so that

@@ -2,7 +2,8 @@
 //!
 //! Triangles are drawn into a depth picture of the eye ([`depth`]) at twice the size of the result; what each cell
 //! sees is lit by a lamp and a sky whose directions have depth pictures of their own ([`light`]), and four cells
-//! make a pixel. Light of the lamp is the same in all of a plane that a pixel sees, and that of the sky in four pixels. The part stands on a sheet of paper on which its shadow falls, except in the view from in front.
+//! make a pixel. Light of the lamp is the same in all of a plane that a pixel sees, and that of the sky in four pixels.
+//! The part stands on a sheet of paper on which its shadow falls, except in the view from in front.
 //! Excluded: perspective, gloss that mirrors, textures.
 
 mod camera;
