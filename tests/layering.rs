@@ -61,7 +61,7 @@ const OWED: [(&str, &str); 3] = [
 const LIBRARIES: [(&str, &[&str]); 16] = [
     ("i_overlay", &["src/planar/overlay.rs", "src/fabricate/caps.rs"]),
     ("i_triangle", &["src/fabricate/caps.rs"]),
-    ("spade", &["src/verify", "src/fit/links.rs", "src/fabricate/enforce/core.rs"]),
+    ("spade", &["src/verify", "src/fit/links.rs", "src/fabricate/caps.rs", "src/fabricate/enforce/core.rs"]),
     ("faer", &["src/fit/least_squares.rs"]),
     ("petgraph", &["src/reeb"]),
     ("usvg", &["src/exemplar", "src/verify", "src/analysis/overlay.rs"]),

@@ -1,20 +1,30 @@
-//! Exact triangulation of one component: the one adapter to i_triangle.
+//! Exact triangulation of one component: the one adapter to i_triangle, and to spade for wide components.
 //!
-//! Its integer API keeps every boundary vertex when both preserve flags are set, collinear ones included;
-//! engines that drop those leave slits where a wall meets the cap. The monotone triangulation is refined to
+//! The integer API of i_triangle keeps every boundary vertex when both preserve flags are set, collinear ones included;
+//! engines that drop those leave slits where a wall meets the cap. Edges of its monotone triangulation are flipped until it is
 //! a Delaunay one, which is what keeps slivers out: a cap is read back by programs that drop triangles of
-//! nearly no area. The result is not trusted: it is compared with the component in exact arithmetic, so that
-//! a fault of the engine is an error and never a leaking solid. `uncheck_triangulate` of the same crate is
-//! unsound and stays out.
+//! nearly no area. A strand takes hardly any flips; a wide disc takes the more for each triangle the more vertices it
+//! has. So flips have a limit, beyond which the triangulation is made by spade, which is slower for strands, and not for
+//! discs. The result is not trusted: it is compared with the component in exact arithmetic, so that a fault of an engine is
+//! an error and never a leaking solid. `uncheck_triangulate` of i_triangle is unsound and stays out.
 
+use i_triangle::advanced::delaunay::DelaunayRefine;
+use i_triangle::geom::point::IndexPoint;
+use i_triangle::geom::triangle::IntTriangle;
 use i_triangle::i_overlay::core::fill_rule::FillRule;
 use i_triangle::i_overlay::core::overlay::IntOverlayOptions;
 use i_triangle::i_overlay::i_float::int::point::IntPoint;
 use i_triangle::int::custom::IntCustomTriangulatable;
+use i_triangle::int::triangulation::RawIntTriangulation;
 use i_triangle::int::validation::Validation;
 use rustc_hash::FxHashMap;
+use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 use crate::planar::{GridPoint, Part};
+
+/// Flips for each triangle, on average, after which it is left to the other engine. Strands take one or two. More, and
+/// wide components wait for what is thrown away; fewer, and strands take three times as long.
+const FLIPS: usize = 6;
 
 /// Counter-clockwise triangles that cover `part` exactly, as indices into its vertices in the order of
 /// [`Part::contours`].
@@ -22,25 +32,100 @@ use crate::planar::{GridPoint, Part};
 /// # Errors
 /// What was wrong with the engine's triangles.
 pub(super) fn triangulate(part: &Part) -> Result<Vec<[u32; 3]>, &'static str> {
+    let vertices: Vec<GridPoint> = part.contours().flat_map(|c| c.points()).copied().collect();
+    let triangles = match flipped(part, &vertices, FLIPS)? {
+        Some(triangles) => triangles,
+        None => constrained(part, &vertices)?,
+    };
+    check(part, &vertices, &triangles)?;
+    Ok(triangles)
+}
+
+/// The triangles of i_triangle; `None` when they take more than `limit` flips each.
+fn flipped(part: &Part, vertices: &[GridPoint], limit: usize) -> Result<Option<Vec<[u32; 3]>>, &'static str> {
     let shape: Vec<Vec<IntPoint<i64>>> =
         part.contours().map(|c| c.points().iter().map(|p| IntPoint { x: p.x, y: p.y }).collect()).collect();
     let validation =
         Validation { fill_rule: FillRule::NonZero, options: IntOverlayOptions::keep_all_points() };
-    let delaunay = shape.custom_triangulate(validation).into_delaunay();
-
-    let vertices: Vec<GridPoint> = part.contours().flat_map(|c| c.points()).copied().collect();
+    let monotone = shape.custom_triangulate(validation);
+    let Some(triangles) = delaunay(&monotone, limit) else { return Ok(None) };
     let numbers: FxHashMap<GridPoint, u32> = vertices.iter().copied().zip(0..).collect();
     // The engine numbers points in its own order.
     let renumber: Option<Vec<u32>> =
-        delaunay.points().iter().map(|p| numbers.get(&GridPoint::new(p.x, p.y)).copied()).collect();
+        monotone.points().iter().map(|p| numbers.get(&GridPoint::new(p.x, p.y)).copied()).collect();
     let renumber = renumber.ok_or("a vertex that the component does not have")?;
-    let triangles: Vec<[u32; 3]> = delaunay
-        .triangle_indices::<u32>()
-        .chunks_exact(3)
-        .map(|t| [0, 1, 2].map(|k| renumber[t[k] as usize]))
+    Ok(Some(triangles.into_iter().map(|t| t.map(|v| renumber[v])).collect()))
+}
+
+/// The Delaunay triangulation of the same points; `None` when it takes more than `limit` flips for each triangle.
+fn delaunay(monotone: &RawIntTriangulation<i64>, limit: usize) -> Option<Vec<[usize; 3]>> {
+    let point = |index: u32| IndexPoint { index: index as usize, point: monotone.points()[index as usize] };
+    let corners = monotone.triangle_indices::<u32>();
+    let with_neighbors = corners.chunks_exact(3).zip(monotone.triangle_neighbors());
+    let mut triangles: Vec<IntTriangle<i64>> = with_neighbors
+        .map(|(t, neighbors)| IntTriangle { vertices: [t[0], t[1], t[2]].map(point), neighbors })
         .collect();
-    check(part, &vertices, &triangles)?;
-    Ok(triangles)
+    let mut flips_left = limit * triangles.len();
+    // In the order of their numbers, over and over: those of which a neighbour was flipped since they were looked at.
+    let mut waiting: Vec<usize> = (0..triangles.len()).collect();
+    let mut is_waiting = vec![true; triangles.len()];
+    while !waiting.is_empty() {
+        let mut next = Vec::new();
+        for t in waiting {
+            while let Some(other) = flip(&mut triangles, t) {
+                flips_left = flips_left.checked_sub(1)?;
+                is_waiting[other] = true;
+                next.push(other);
+            }
+            is_waiting[t] = false;
+        }
+        next.retain(|&t| is_waiting[t]);
+        next.sort_unstable();
+        next.dedup();
+        waiting = next;
+    }
+    Some(triangles.into_iter().map(|t| t.vertices.map(|v| v.index)).collect())
+}
+
+/// Flips one edge of a triangle that needs it; the triangle beyond.
+fn flip(triangles: &mut [IntTriangle<i64>], t: usize) -> Option<usize> {
+    let neighbors = triangles[t].neighbors;
+    neighbors.into_iter().find(|&other| other < triangles.len() && triangles.swap_triangles(t, other))
+}
+
+/// The triangles of spade. Numbers of the grid of a solid are exact in its floats, and so are its predicates.
+fn constrained(part: &Part, vertices: &[GridPoint]) -> Result<Vec<[u32; 3]>, &'static str> {
+    let mut edges = Vec::with_capacity(vertices.len());
+    let mut start = 0;
+    for contour in part.contours() {
+        let n = contour.points().len();
+        edges.extend((0..n).map(|i| [start + i, start + (i + 1) % n]));
+        start += n;
+    }
+    let points = vertices.iter().map(|p| Point2::new(p.x as f64, p.y as f64)).collect();
+    let mut conflicts = 0;
+    let mesh =
+        ConstrainedDelaunayTriangulation::<Point2<f64>>::try_bulk_load_cdt(points, edges, |_| conflicts += 1)
+            .map_err(|_| "a coordinate out of range")?;
+    if conflicts > 0 || mesh.num_vertices() != vertices.len() {
+        return Err("contours that meet");
+    }
+    // From face to face, beginning outside: every edge of a contour that is crossed changes sides.
+    let mut is_ink = vec![false; mesh.num_all_faces()];
+    let mut is_seen = vec![false; mesh.num_all_faces()];
+    is_seen[mesh.outer_face().index()] = true;
+    let mut stack: Vec<_> = mesh.convex_hull().map(|edge| edge.rev().fix()).collect();
+    while let Some(entered) = stack.pop() {
+        let entered = mesh.directed_edge(entered);
+        let (face, behind) = (entered.face().index(), entered.rev().face().index());
+        if std::mem::replace(&mut is_seen[face], true) {
+            continue;
+        }
+        is_ink[face] = is_ink[behind] != entered.is_constraint_edge();
+        stack.extend([entered.next(), entered.prev()].map(|edge| edge.rev().fix()));
+    }
+    let ink = mesh.inner_faces().filter(|face| is_ink[face.index()]);
+    Ok(ink.map(|face| face.vertices().map(|v| v.index() as u32)).collect())
 }
 
 /// Whether `triangles` are a triangulation of `part` without new or lost vertices: all of positive area,
@@ -135,6 +220,44 @@ mod tests {
         let outer = [(0, 0), (10, 0), (20, 0), (30, 0), (30, 30), (15, 30), (0, 30)];
         let hole = [(10, 10), (10, 15), (10, 20), (20, 20), (20, 10), (15, 10)];
         assert_eq!(triangulate(&part(&[&outer, &hole])).unwrap().len(), 7 + 6);
+    }
+
+    /// A disc with a tooth for each of so many vertices, and a hole that is like it.
+    fn toothed(teeth: i64) -> Part {
+        let around = |radius: f64, sense: f64| -> Vec<(i64, i64)> {
+            let at = |i: i64| {
+                let turn = sense * std::f64::consts::TAU * i as f64 / teeth as f64;
+                let radius = radius * if i % 2 == 0 { 1.0 } else { 0.97 };
+                ((radius * turn.cos()) as i64, (radius * turn.sin()) as i64)
+            };
+            (0..teeth).map(at).collect()
+        };
+        part(&[&around(9e6, 1.0), &around(2e6, -1.0)])
+    }
+
+    #[test]
+    fn both_engines_find_the_delaunay_triangulation() {
+        let part = toothed(600);
+        let vertices: Vec<GridPoint> = part.contours().flat_map(|c| c.points()).copied().collect();
+        let sorted = |mut triangles: Vec<[u32; 3]>| {
+            // From the least corner on.
+            for t in &mut triangles {
+                let [a, b, c] = *t;
+                let least = if a < b && a < c { 0 } else { 1 + usize::from(c < b) };
+                t.rotate_left(least);
+            }
+            triangles.sort_unstable();
+            triangles
+        };
+        assert_eq!(flipped(&part, &vertices, 0).unwrap(), None);
+        let flipped = flipped(&part, &vertices, 1000).unwrap().unwrap();
+        let constrained = constrained(&part, &vertices).unwrap();
+        assert_eq!(check(&part, &vertices, &flipped), Ok(()));
+        assert_eq!(check(&part, &vertices, &constrained), Ok(()));
+        let (flipped, constrained) = (sorted(flipped), sorted(constrained));
+        // But for points on one circle, of which rounding leaves hardly any.
+        let common = flipped.iter().filter(|t| constrained.binary_search(t).is_ok()).count();
+        assert!(common * 100 >= 99 * flipped.len(), "{common} of {}", flipped.len());
     }
 
     #[test]

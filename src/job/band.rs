@@ -18,7 +18,7 @@ use super::output::{Format, Output, Pending, Target, persist};
 use super::part::{Part, PartError};
 use super::picture::Pictured;
 use super::plan::Plan;
-use super::print::{self, check_mesh};
+use super::print::{self, MeshFile, Meshes};
 use super::report::{BandReport, InputReport};
 use super::small;
 use super::stage::{Clock, Stage};
@@ -286,7 +286,15 @@ impl Band {
         let mut clock = Clock::new(progress);
         let mut report = self.report.clone();
         let expected = self.expected();
-        let drawn = self.drawn.clone().map_or_else(|| self.drawn(&mut clock), Ok);
+        // The solid knows nothing of the drawing.
+        let (drawn, meshes) = clock.both(
+            |clock| self.drawn.clone().map_or_else(|| self.drawn(clock), Ok),
+            |clock| {
+                let is_shown = self.job.options.picture.view.is_some();
+                let make = |notes: &mut Vec<String>| self.solid(notes);
+                Meshes::new(outputs, is_shown, &self.document(), &expected, clock, make)
+            },
+        );
         let Drawn { drawing, found } = drawn.map_err(|error| match error {
             JobError::Mismatch { mismatch, remedy, .. } => {
                 let shown = outputs.iter().find(|o| o.format() == Format::Svg).or(outputs.first());
@@ -295,12 +303,13 @@ impl Band {
             }
             error => error,
         })?;
+        let mut meshes = meshes?;
         let laser = &self.job.options.laser;
         let mut cutting = match laser.is_needed(outputs) {
             true => Some(clock.time(Stage::CutLines, || self.cutting())?),
             false => None,
         };
-        let (mut pending, mut raised) = (Vec::new(), None);
+        let mut pending = Vec::new();
         report.made.narrow_places.clone_from(&found.narrow_places);
         let mut digests = Vec::new();
         let mut sizes = Vec::new();
@@ -333,19 +342,14 @@ impl Band {
                     }
                     item
                 }
-                format @ (Format::Stl | Format::Threemf | Format::Obj) => {
-                    let bytes = clock.time(Stage::Stl, || {
-                        let solid = print::raised(&mut raised, || self.solid(&mut report.made.notes))?;
-                        print::mesh(format, solid, &self.document())
-                    })?;
+                Format::Stl | Format::Threemf | Format::Obj => {
+                    let MeshFile { item, bytes, found } = meshes.next();
                     digest(output, &bytes);
                     sizes.push(bytes.len());
-                    let item = Pending::new(output.target(), bytes)?;
-                    let solid = clock.time(Stage::Verify, || check_mesh(output, &item, &expected))?;
-                    report.made.triangles = Some(solid.triangles);
-                    report.made.shells = Some(solid.shells.len());
-                    report.made.genus = Some(solid.genus);
-                    report.made.volume_mm3 = Some(solid.volume_mm3);
+                    report.made.triangles = Some(found.triangles);
+                    report.made.shells = Some(found.shells.len());
+                    report.made.genus = Some(found.genus);
+                    report.made.volume_mm3 = Some(found.volume_mm3);
                     item
                 }
                 Format::Png => {
@@ -359,8 +363,7 @@ impl Band {
                         engraved: engraved.as_ref(),
                     };
                     let picture = clock.time(Stage::Png, || {
-                        let make = || self.solid(&mut report.made.notes);
-                        self.job.options.picture.png(&part, || print::raised(&mut raised, make))
+                        self.job.options.picture.png(&part, || meshes.solid(|notes| self.solid(notes)))
                     })?;
                     digest(output, &picture);
                     sizes.push(picture.len());
@@ -369,6 +372,7 @@ impl Band {
             };
             pending.push(item);
         }
+        report.made.notes.append(&mut meshes.notes);
         if let Some(narrowest) = found.min_feature.filter(|n| n.width_mm < HAIRLINE_MM) {
             report.made.notes.push(format!(
                 "ink only {:.3} mm wide holds the band together, which hardly any machine makes; a larger --width makes it wider in proportion",

@@ -12,7 +12,7 @@ use super::laser::{Cutting, LaserOptions, LaserReport};
 use super::making::{self, Border, EnforcedReport, Quantities};
 use super::output::{Format, Output, Pending, Target, persist};
 use super::picture::{PictureOptions, Pictured};
-use super::print::{self, PrintOptions, check_mesh};
+use super::print::{MeshFile, Meshes, PrintOptions};
 use super::report::{InputReport, StageTime};
 use super::small;
 use super::stage::{Clock, Stage};
@@ -146,13 +146,25 @@ pub fn extrude(
         notes.push(report.note());
         (region, enforced) = (mended, Some(report));
     }
-    let narrow_places = clock.time(Stage::Verify, || making::worst_places(&region, tolerances));
-    check_widths(&region, tolerances, file, enforce)?;
     let expected = Expected {
         components: Some(region.components().into()),
         holes: Some(region.holes().into()),
         ..Expected::default()
     };
+    let raise = |notes: &mut Vec<String>| print.solid(&region, thickness_mm, tolerances.chord_mm(), notes);
+    let document = print.document(file, None, Counts::of(&region));
+    // Neither needs the other.
+    let (narrow_places, meshes) = clock.both(
+        |clock| {
+            clock.time(Stage::Verify, || {
+                let narrow_places = making::worst_places(&region, tolerances);
+                check_widths(&region, tolerances, file, enforce).map(|()| narrow_places)
+            })
+        },
+        |clock| Meshes::new(outputs, picture.view.is_some(), &document, &expected, clock, raise),
+    );
+    let narrow_places = narrow_places?;
+    let mut meshes = meshes?;
     let mut cutting = match laser.is_needed(outputs) {
         true => {
             let page_mm = DVec2::from(drawing.page_mm());
@@ -163,7 +175,7 @@ pub fn extrude(
         }
         false => None,
     };
-    let (mut raised, mut solid, mut drawn) = (None, None, None);
+    let (mut solid, mut drawn) = (None, None);
     let mut pending = Vec::with_capacity(outputs.len());
     let mut sizes = Vec::with_capacity(outputs.len());
     for output in outputs {
@@ -176,15 +188,10 @@ pub fn extrude(
         }
         let item = match output.format() {
             Format::Dxf => unreachable!("a DXF has cut lines"),
-            format @ (Format::Stl | Format::Threemf | Format::Obj) => {
-                let bytes = clock.time(Stage::Stl, || {
-                    let make = || print.solid(&region, thickness_mm, tolerances.chord_mm(), &mut notes);
-                    let solid = print::raised(&mut raised, make)?;
-                    print::mesh(format, solid, &print.document(file, None, Counts::of(&region)))
-                })?;
+            Format::Stl | Format::Threemf | Format::Obj => {
+                let MeshFile { item, bytes, found } = meshes.next();
                 sizes.push(bytes.len());
-                let item = Pending::new(target, bytes)?;
-                solid = Some(clock.time(Stage::Verify, || check_mesh(output, &item, &expected))?);
+                solid = Some(found);
                 item
             }
             Format::Svg => {
@@ -206,10 +213,7 @@ pub fn extrude(
                     narrow_mm: &narrow_mm,
                     engraved: engraved.as_ref(),
                 };
-                let picture = clock.time(Stage::Png, || {
-                    let make = || print.solid(&region, thickness_mm, tolerances.chord_mm(), &mut notes);
-                    picture.png(&part, || print::raised(&mut raised, make))
-                })?;
+                let picture = clock.time(Stage::Png, || picture.png(&part, || meshes.solid(raise)))?;
                 sizes.push(picture.len());
                 Pending::new(target, picture)?
             }
@@ -217,6 +221,7 @@ pub fn extrude(
         pending.push(item);
     }
     let narrowest_mm = narrow_places.ink.first().map(|n| n.width_mm);
+    notes.append(&mut meshes.notes);
     notes.extend(small::warnings(&region, tolerances, outputs, narrowest_mm));
     persist(pending, None)?;
     Ok(ExtrudeReport {

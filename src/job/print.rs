@@ -2,11 +2,13 @@
 //! or OBJ.
 
 use std::borrow::Cow;
+use std::collections::VecDeque;
 use std::path::Path;
 
 use super::error::JobError;
 use super::extrude::name;
 use super::output::{Format, Output, Pending};
+use super::stage::{Clock, Stage};
 use crate::export::{self, MeshDocument};
 use crate::fabricate::{self, Bed, Counts, Profile, Solid};
 use crate::planar::Region;
@@ -112,23 +114,78 @@ pub(super) fn mesh(format: Format, solid: &Solid, document: &MeshDocument) -> Re
     })
 }
 
-/// The solid that was made before, or the one that is made now.
-pub(super) fn raised(
-    known: &mut Option<Solid>,
-    make: impl FnOnce() -> Result<Solid, JobError>,
-) -> Result<&Solid, JobError> {
-    Ok(match known {
-        Some(solid) => solid,
-        None => known.insert(make()?),
-    })
+/// The files of a solid.
+#[derive(Default)]
+pub(super) struct Meshes {
+    /// The solid, once it was made.
+    solid: Option<Solid>,
+    /// What the user may want to know of it.
+    pub(super) notes: Vec<String>,
+    /// The files, in the order of the outputs that they are for.
+    files: VecDeque<MeshFile>,
+}
+
+/// A file of a solid that has passed.
+pub(super) struct MeshFile {
+    pub(super) item: Pending,
+    /// What it holds.
+    pub(super) bytes: Vec<u8>,
+    /// What was found in it.
+    pub(super) found: MeshReport,
+}
+
+impl Meshes {
+    /// Those of `outputs` that hold a solid, each written, read again and held against the plan. A solid that will be shown is
+    /// made without any.
+    ///
+    /// # Errors
+    /// [`JobError`] when the solid cannot be made, and of the first file that cannot be written or does not pass.
+    pub(super) fn new(
+        outputs: &[Output],
+        is_shown: bool,
+        document: &MeshDocument,
+        expected: &Expected,
+        clock: &mut Clock<'_>,
+        make: impl FnOnce(&mut Vec<String>) -> Result<Solid, JobError>,
+    ) -> Result<Self, JobError> {
+        let mut meshes = Self::default();
+        let mut outputs = outputs.iter().filter(|output| output.format().is_solid()).peekable();
+        if outputs.peek().is_none() && !is_shown {
+            return Ok(meshes);
+        }
+        let solid = clock.time(Stage::Stl, || make(&mut meshes.notes))?;
+        for output in outputs {
+            let bytes = clock.time(Stage::Stl, || mesh(output.format(), &solid, document))?;
+            let item = Pending::new(output.target(), bytes)?;
+            let (bytes, found) = clock.time(Stage::Verify, || check_mesh(output, &item, expected))?;
+            meshes.files.push_back(MeshFile { item, bytes, found });
+        }
+        Ok(Self { solid: Some(solid), ..meshes })
+    }
+
+    /// The next of the files.
+    pub(super) fn next(&mut self) -> MeshFile {
+        self.files.pop_front().expect("there is one for each output that holds a solid")
+    }
+
+    /// The solid that was made before, or the one that is made now.
+    pub(super) fn solid(
+        &mut self,
+        make: impl FnOnce(&mut Vec<String>) -> Result<Solid, JobError>,
+    ) -> Result<&Solid, JobError> {
+        Ok(match &mut self.solid {
+            Some(solid) => solid,
+            none => none.insert(make(&mut self.notes)?),
+        })
+    }
 }
 
 /// Reads a written solid again and holds it against the plan.
-pub(super) fn check_mesh(
+fn check_mesh(
     output: &Output,
     pending: &Pending,
     expected: &Expected,
-) -> Result<MeshReport, JobError> {
+) -> Result<(Vec<u8>, MeshReport), JobError> {
     let bytes = pending.read_again()?;
     let read = match output.format() {
         Format::Threemf => verify::read_threemf(&bytes),
@@ -142,5 +199,5 @@ pub(super) fn check_mesh(
         mismatch,
         remedy: String::new(),
     })?;
-    Ok(report)
+    Ok((bytes, report))
 }

@@ -66,7 +66,7 @@ pub struct FallbackReport {
     pub fault: String,
 }
 
-/// How long a stage took.
+/// How long a stage took. Solids are made and read again while the drawing is, so stages may add up to more than the whole.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct StageTime {
     /// The stage.

@@ -86,10 +86,35 @@ impl<'a> Clock<'a> {
         let start = Instant::now();
         let result = work();
         let milliseconds = start.elapsed().as_secs_f64() * 1e3;
-        match self.times.iter_mut().find(|t| t.stage == stage.name()) {
-            Some(known) => known.milliseconds += milliseconds,
-            None => self.times.push(StageTime { stage: stage.name(), milliseconds }),
-        }
+        self.add(StageTime { stage: stage.name(), milliseconds });
         result
+    }
+
+    /// Runs `work`, and on another thread `beside`, which tells nobody of its stages. Both times count, so that stages may
+    /// add up to more than the whole took.
+    pub(super) fn both<T, U: Send>(
+        &mut self,
+        work: impl FnOnce(&mut Self) -> T,
+        beside: impl FnOnce(&mut Clock<'_>) -> U + Send,
+    ) -> (T, U) {
+        std::thread::scope(|scope| {
+            let other = scope.spawn(|| {
+                let mut nobody = |_| {};
+                let mut clock = Clock::new(&mut nobody);
+                let result = beside(&mut clock);
+                (result, clock.times)
+            });
+            let own = work(self);
+            let (theirs, times) = other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+            times.into_iter().for_each(|time| self.add(time));
+            (own, theirs)
+        })
+    }
+
+    fn add(&mut self, time: StageTime) {
+        match self.times.iter_mut().find(|known| known.stage == time.stage) {
+            Some(known) => known.milliseconds += time.milliseconds,
+            None => self.times.push(time),
+        }
     }
 }

@@ -2,24 +2,38 @@
 //!
 //! Two facets of a sound surface share an edge, a corner, or nothing. Whether they share more is decided by
 //! exact predicates: an edge of one facet against the other facet, both closed sets, leaving out the corners
-//! that both have. Pairs are found by their bounding boxes ([`super::boxes`]); most of them lie on two sides of a plane or,
-//! seen from above, of an edge, which is tried first. Excluded: facets without area, which are a fault
-//! of their own, and pairs with the same three corners, which are duplicates.
+//! that both have. Caps that are sound as a whole ([`super::plates`]) are left out first. Pairs of what is left are found by
+//! their bounding boxes ([`super::boxes`]); most of them lie on two sides of a plane or, seen from above, of an edge,
+//! which is tried next. Excluded: facets without area, which are a fault of their own, and pairs with the same three
+//! corners, which are duplicates.
 
 use glam::{DVec2, DVec3};
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
 use super::boxes::{Box3, pairs_that_meet};
+use super::plates::in_plates;
+use super::shells::Side;
 
 /// No facet.
 const NONE: usize = usize::MAX;
 
 /// The facets that cross or touch another one, each once and with a place near that; facets are numbers of
-/// points of `at`.
-pub(super) fn crossings(at: &[DVec3], facets: &[[usize; 3]]) -> Vec<(usize, DVec3)> {
+/// points of `at`, and `sides` are theirs, by their ends.
+pub(super) fn crossings(at: &[DVec3], facets: &[[usize; 3]], sides: &[Side]) -> Vec<(usize, DVec3)> {
+    let is_known = in_plates(at, facets, sides);
+    let doubtful: Vec<usize> = (0..facets.len()).filter(|&facet| !is_known[facet]).collect();
+    crossings_of_pairs(at, facets, &doubtful)
+}
+
+/// The same among the facets with these numbers, by looking at pairs.
+pub(super) fn crossings_of_pairs(
+    at: &[DVec3],
+    facets: &[[usize; 3]],
+    numbers: &[usize],
+) -> Vec<(usize, DVec3)> {
     let is_flat = |&[a, b, c]: &[usize; 3]| (at[b] - at[a]).cross(at[c] - at[a]) == DVec3::ZERO;
     let bounds = |&[a, b, c]: &[usize; 3]| (at[a].min(at[b]).min(at[c]), at[a].max(at[b]).max(at[c]));
-    let numbers: Vec<usize> = (0..facets.len()).filter(|&facet| !is_flat(&facets[facet])).collect();
+    let numbers: Vec<usize> = numbers.iter().copied().filter(|&facet| !is_flat(&facets[facet])).collect();
     let boxes: Vec<Box3> = numbers.iter().map(|&facet| bounds(&facets[facet])).collect();
     let kinds: Vec<Kind> = numbers.iter().map(|&facet| Kind::of(facets[facet].map(|v| at[v]))).collect();
     let face = |i: usize| Face { corners: facets[numbers[i]], kind: kinds[i] };
@@ -202,7 +216,7 @@ fn meets_flat(p: DVec2, q: DVec2, t: [DVec2; 3]) -> bool {
 }
 
 /// Whether two closed segments of the plane meet. Exact.
-fn cross_flat(p: DVec2, q: DVec2, a: DVec2, b: DVec2) -> bool {
+pub(super) fn cross_flat(p: DVec2, q: DVec2, a: DVec2, b: DVec2) -> bool {
     let (pa, pb) = (turn(p, q, a), turn(p, q, b));
     let (ap, aq) = (turn(a, b, p), turn(a, b, q));
     if pa == 0.0 && pb == 0.0 {
@@ -218,7 +232,8 @@ fn sign(x: f64) -> f64 {
     if x == 0.0 { 0.0 } else { x.signum() }
 }
 
-fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+/// Positive when `a`, `b` and `c` turn counter-clockwise; only the sign counts, and it is exact.
+pub(super) fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     let coord = |v: DVec2| Coord { x: v.x, y: v.y };
     orient2d(coord(a), coord(b), coord(c))
 }
@@ -236,6 +251,7 @@ fn flat(p: DVec3, axis: usize) -> DVec2 {
 mod tests {
     use proptest::prelude::*;
 
+    use super::super::shells::sides;
     use super::*;
 
     /// Facets of three points each, with equal points made one.
@@ -252,7 +268,7 @@ mod tests {
             })
             .collect();
         let facets: Vec<[usize; 3]> = numbers.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect();
-        crossings(&at, &facets).into_iter().map(|(facet, _)| facet).collect()
+        crossings(&at, &facets, &sides(&facets)).into_iter().map(|(facet, _)| facet).collect()
     }
 
     const BASE: [[f64; 3]; 3] = [[0., 0., 0.], [4., 0., 0.], [0., 4., 0.]];

@@ -32,6 +32,7 @@ mod narrowest;
 mod obj;
 mod path_data;
 mod plain;
+mod plates;
 mod replay;
 mod shells;
 mod spline;

@@ -126,7 +126,7 @@ pub(super) fn survey(facets: &[Facet]) -> MeshReport {
     let mut faults = soup.facet_faults(facets);
     let mut shells = Sets::new(facets.len());
     let mut fans = Sets::new(3 * facets.len());
-    let sides = soup.sides();
+    let sides = sides(&soup.facets);
     // The facet that stands for each edge, with whether the edge is sound.
     let mut edges: Vec<(usize, bool)> = Vec::with_capacity(sides.len() / 2);
     for edge in sides.chunk_by(|a, b| a.ends == b.ends) {
@@ -151,7 +151,7 @@ pub(super) fn survey(facets: &[Facet]) -> MeshReport {
     faults.extend(soup.pinched(&mut fans));
     let (shells, inside_out) = soup.shells(&mut shells, &mut fans, &edges);
     faults.extend(inside_out);
-    faults.extend(crossings(&soup.at, &soup.facets).into_iter().map(|(facet, position)| MeshFault {
+    faults.extend(crossings(&soup.at, &soup.facets, &sides).into_iter().map(|(facet, position)| MeshFault {
         kind: MeshFaultKind::Crossing,
         facet,
         position_mm: position.to_array(),
@@ -176,12 +176,26 @@ struct Soup {
 
 /// One use of an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Side {
+pub(super) struct Side {
     /// The lower vertex, then the higher.
-    ends: [usize; 2],
-    facet: usize,
+    pub(super) ends: [usize; 2],
+    pub(super) facet: usize,
     /// Whether the facet runs from the lower vertex to the higher.
-    forward: bool,
+    pub(super) forward: bool,
+}
+
+/// Every side of every facet that does not begin where it ends, by edge.
+pub(super) fn sides(facets: &[[usize; 3]]) -> Vec<Side> {
+    let mut sides = Vec::with_capacity(3 * facets.len());
+    for (facet, &[a, b, c]) in facets.iter().enumerate() {
+        for (p, q) in [(a, b), (b, c), (c, a)] {
+            if p != q {
+                sides.push(Side { ends: [p.min(q), p.max(q)], facet, forward: p < q });
+            }
+        }
+    }
+    sides.sort_unstable();
+    sides
 }
 
 impl Soup {
@@ -207,20 +221,6 @@ impl Soup {
 
     fn points(&self, facet: usize) -> [DVec3; 3] {
         self.facets[facet].map(|v| self.at[v])
-    }
-
-    /// Every side of every facet with three corners, by edge.
-    fn sides(&self) -> Vec<Side> {
-        let mut sides = Vec::with_capacity(3 * self.facets.len());
-        for (facet, &[a, b, c]) in self.facets.iter().enumerate() {
-            for (p, q) in [(a, b), (b, c), (c, a)] {
-                if p != q {
-                    sides.push(Side { ends: [p.min(q), p.max(q)], facet, forward: p < q });
-                }
-            }
-        }
-        sides.sort_unstable();
-        sides
     }
 
     fn facet_faults(&self, given: &[Facet]) -> Vec<MeshFault> {

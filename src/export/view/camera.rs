@@ -117,9 +117,9 @@ impl Raster {
 
     /// The cell that a point of the picture plane lies in; `None` outside of the window.
     pub(super) fn cell(&self, p: DVec2) -> Option<usize> {
-        let at = ((p - self.low) * self.scale).floor();
+        let at = (p - self.low) * self.scale;
         let is_inside = at.x >= 0.0 && at.y >= 0.0 && at.x < self.width as f64 && at.y < self.height as f64;
-        is_inside.then(|| at.y as usize * self.width + at.x as usize)
+        is_inside.then(|| at.y as i64 as usize * self.width + at.x as i64 as usize)
     }
 }
 

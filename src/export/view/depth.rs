@@ -12,7 +12,6 @@ pub(super) const NONE: u32 = u32::MAX;
 
 /// The nearest triangle of each cell and how near it is.
 pub(super) struct Depths {
-    pub(super) raster: Raster,
     pub(super) nearest: Vec<f32>,
     pub(super) triangles: Vec<u32>,
 }
@@ -20,51 +19,64 @@ pub(super) struct Depths {
 impl Depths {
     /// The triangles as they are seen in the window of a frame.
     pub(super) fn new(triangles: &[[DVec3; 3]], camera: &Camera, raster: Raster) -> Self {
-        let mut depths = Self {
-            raster,
-            nearest: vec![f32::NEG_INFINITY; raster.cells()],
-            triangles: vec![NONE; raster.cells()],
-        };
-        for (number, corners) in triangles.iter().enumerate() {
-            let [a, b, c] = corners.map(|p| raster.in_cells(camera.of(p)));
-            // From behind; walls that are seen from the side have no cells.
-            if (b - a).truncate().perp_dot((c - a).truncate()) > 0.0 {
-                depths.draw([a, b, c], number as u32);
+        let mut depths =
+            Self { nearest: vec![f32::NEG_INFINITY; raster.cells()], triangles: vec![NONE; raster.cells()] };
+        draw(triangles, camera, &raster, |cell, z, number| {
+            if z > depths.nearest[cell] {
+                depths.nearest[cell] = z;
+                depths.triangles[cell] = number;
             }
-        }
+        });
         depths
     }
+}
 
-    fn draw(&mut self, [a, b, c]: [DVec3; 3], number: u32) {
-        let normal = (b - a).cross(c - a);
-        let (slope_x, slope_y) = (-normal.x / normal.z, -normal.y / normal.z);
-        let (least, most) = (a.z.min(b.z).min(c.z), a.z.max(b.z).max(c.z));
-        let (low, high) = (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
-        for line in cells(low, high, self.raster.height) {
-            let y = line as f64 + 0.5;
-            let (mut from, mut to) = (f64::INFINITY, f64::NEG_INFINITY);
-            for (p, q) in [(a, b), (b, c), (c, a)] {
-                if let Some(x) = crossing(p, q, y) {
-                    (from, to) = (from.min(x), to.max(x));
-                }
+/// Tells `paint` every cell of every triangle that is seen from in front, how near it is there, and the triangle's number.
+pub(super) fn draw(
+    triangles: &[[DVec3; 3]],
+    camera: &Camera,
+    raster: &Raster,
+    mut paint: impl FnMut(usize, f32, u32),
+) {
+    for (number, [a, b, c]) in triangles.iter().enumerate() {
+        // Half of a solid is behind, and walls that are seen from the side have no cells.
+        if (b - a).cross(c - a).dot(camera.towards) > 0.0 {
+            let corners = [a, b, c].map(|&p| raster.in_cells(camera.of(p)));
+            draw_one(corners, raster, |cell, z| paint(cell, z, number as u32));
+        }
+    }
+}
+
+fn draw_one([a, b, c]: [DVec3; 3], raster: &Raster, mut paint: impl FnMut(usize, f32)) {
+    let normal = (b - a).cross(c - a);
+    let (slope_x, slope_y) = (-normal.x / normal.z, -normal.y / normal.z);
+    let (least, most) = (a.z.min(b.z).min(c.z), a.z.max(b.z).max(c.z));
+    let (low, high) = (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
+    for line in cells(low, high, raster.height) {
+        let y = line as f64 + 0.5;
+        let (mut from, mut to) = (f64::INFINITY, f64::NEG_INFINITY);
+        for (p, q) in [(a, b), (b, c), (c, a)] {
+            if let Some(x) = crossing(p, q, y) {
+                (from, to) = (from.min(x), to.max(x));
             }
-            for column in cells(from, to, self.raster.width) {
-                let x = column as f64 + 0.5;
-                // Where the triangle is nearly edge-on its plane says little.
-                let z = (a.z + slope_x * (x - a.x) + slope_y * (y - a.y)).clamp(least, most) as f32;
-                let cell = line * self.raster.width + column;
-                if z > self.nearest[cell] {
-                    self.nearest[cell] = z;
-                    self.triangles[cell] = number;
-                }
-            }
+        }
+        for column in cells(from, to, raster.width) {
+            let x = column as f64 + 0.5;
+            // Where the triangle is nearly edge-on its plane says little.
+            let z = (a.z + slope_x * (x - a.x) + slope_y * (y - a.y)).clamp(least, most) as f32;
+            paint(line * raster.width + column, z);
         }
     }
 }
 
 /// The cells whose middle lies in [from, to).
 fn cells(from: f64, to: f64, most: usize) -> std::ops::Range<usize> {
-    let cell = |x: f64| ((x - 0.5).ceil().max(0.0) as usize).min(most);
+    // Rounded up; the library's function is a call for each line.
+    let cell = |x: f64| {
+        let x = (x - 0.5).clamp(0.0, most as f64);
+        let whole = x as i64;
+        (whole + i64::from((whole as f64) < x)) as usize
+    };
     if from < to { cell(from)..cell(to) } else { 0..0 }
 }
 

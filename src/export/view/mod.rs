@@ -2,7 +2,8 @@
 //!
 //! Triangles are drawn into a depth picture of the eye ([`depth`]) at twice the size of the result; what each cell
 //! sees is lit by a lamp and a sky whose directions have depth pictures of their own ([`light`]), and four cells
-//! make a pixel. The part stands on a sheet of paper on which its shadow falls, except in the view from in front.
+//! make a pixel. Light of the lamp is the same in all of a plane that a pixel sees, and that of the sky in four pixels.
+//! The part stands on a sheet of paper on which its shadow falls, except in the view from in front.
 //! Excluded: perspective, gloss that mirrors, textures.
 
 mod camera;
@@ -16,13 +17,15 @@ pub use camera::View;
 
 use self::camera::{Camera, Raster};
 use self::depth::{Depths, NONE};
-use self::light::{Light, Place, light, towards_lamp};
+use self::light::{Place, lamp_light, open_sky, towards_lamp};
 use super::ExportError;
 use super::canvas::{PAPER, check_pixels};
 use crate::fabricate::Solid;
 
 /// Cells along the side of a pixel.
 const CELLS: usize = 2;
+/// Cells along the side of a square in which the sky is the same.
+const SKY_CELLS: usize = 4;
 /// The margin on each side, as a part of the longer side of what is seen.
 const MARGIN: f64 = 0.05;
 /// What parts are painted with when nothing else is asked for: brass.
@@ -74,31 +77,39 @@ pub fn view_png(parts: &[Painted<'_>], view: View, longer_side: u32) -> Result<V
             normal: DVec3::Z,
         })
     };
-    let (places, place_of) = shared(&raster, place);
-    let lights = light(&triangles, &places);
+    let (places, place_of) = shared(&raster, CELLS, place);
+    let (sky_places, sky_of) = shared(&raster, SKY_CELLS, place);
+    let lamp = lamp_light(&triangles, &places);
+    let sky = open_sky(&triangles, &sky_places);
     let paper = linear(PAPER);
     let shade = |cell: usize| {
-        let Some(lit) = lights.get(place_of[cell] as usize) else { return paper };
+        let Some(place) = places.get(place_of[cell] as usize) else { return paper };
+        let light = Light { lamp: lamp[place_of[cell] as usize], sky: sky[sky_of[cell] as usize] };
         match seen.triangles[cell] {
-            NONE => on_paper(paper, lit),
-            triangle => {
-                let normal = places[place_of[cell] as usize].normal;
-                on_part(colours[triangle as usize], lit, normal, &camera)
-            }
+            NONE => on_paper(paper, &light),
+            triangle => on_part(colours[triangle as usize], &light, place.normal, &camera),
         }
     };
     encode(&raster, shade)
 }
 
-/// The places that cells see, and which each of them sees ([`NONE`] for nothing). Cells of one pixel that look at the same
-/// plane share one.
-fn shared(raster: &Raster, place: impl Fn(usize) -> Option<Place>) -> (Vec<Place>, Vec<u32>) {
+/// What reaches a point, each from 0 to 1.
+struct Light {
+    /// Of the lamp, with the angle at which it falls.
+    lamp: f32,
+    /// The part of the sky that is seen.
+    sky: f32,
+}
+
+/// The places that cells see, and which each of them sees ([`NONE`] for nothing). Cells of one square with so many to a side
+/// that look at the same plane share one.
+fn shared(raster: &Raster, side: usize, place: impl Fn(usize) -> Option<Place>) -> (Vec<Place>, Vec<u32>) {
     let mut places: Vec<Place> = Vec::new();
     let mut place_of = vec![NONE; raster.cells()];
-    let within = 2.0 / raster.scale;
-    for pixel in 0..raster.cells() / (CELLS * CELLS) {
+    let within = side as f64 / raster.scale;
+    for square in 0..raster.width.div_ceil(side) * raster.height.div_ceil(side) {
         let first = places.len();
-        for cell in cells_of(raster, pixel) {
+        for cell in cells_of(raster, side, square) {
             let Some(place) = place(cell) else { continue };
             let is_same = |known: &Place| {
                 known.normal.dot(place.normal) > 0.9999
@@ -114,12 +125,13 @@ fn shared(raster: &Raster, place: impl Fn(usize) -> Option<Place>) -> (Vec<Place
     (places, place_of)
 }
 
-/// The cells of a pixel, which are counted line by line from the one with the least x and y.
-fn cells_of(raster: &Raster, pixel: usize) -> impl Iterator<Item = usize> {
-    let across = raster.width / CELLS;
-    let corner = pixel / across * CELLS * raster.width + pixel % across * CELLS;
-    let width = raster.width;
-    (0..CELLS * CELLS).map(move |cell| corner + cell / CELLS * width + cell % CELLS)
+/// The cells of a square with so many to a side; squares are counted line by line from the one with the least x and y.
+fn cells_of(raster: &Raster, side: usize, square: usize) -> impl Iterator<Item = usize> {
+    let across = raster.width.div_ceil(side);
+    let (left, below) = (square % across * side, square / across * side);
+    let (width, right, above) =
+        (raster.width, raster.width.min(left + side), raster.height.min(below + side));
+    (below..above).flat_map(move |y| (left..right).map(move |x| y * width + x))
 }
 
 fn corners(solid: &Solid) -> impl Iterator<Item = [DVec3; 3]> + '_ {
@@ -147,7 +159,7 @@ fn window(triangles: &[[DVec3; 3]], camera: &Camera, longer_side: u32) -> Result
 /// The colour of the paper where light falls on it like this.
 fn on_paper(paper: [f32; 3], light: &Light) -> [f32; 3] {
     let open = towards_lamp().z as f32;
-    let brightness = (LAMP * light.lamp / open + SKY * light.openness()) / (LAMP + SKY);
+    let brightness = (LAMP * light.lamp / open + SKY * light.sky) / (LAMP + SKY);
     // Shadows on paper are cold, as only the sky shines into them.
     let [r, g, b] = paper;
     let shade = 1.0 - brightness;
@@ -157,7 +169,7 @@ fn on_paper(paper: [f32; 3], light: &Light) -> [f32; 3] {
 /// The colour of a part where light falls on it like this.
 fn on_part(colour: [f32; 3], light: &Light, normal: DVec3, camera: &Camera) -> [f32; 3] {
     let bounce = BOUNCE * (1.0 - normal.z as f32) / 2.0;
-    let diffuse = LAMP * light.lamp + SKY * light.openness() * (0.6 + 0.4 * normal.z as f32) + bounce;
+    let diffuse = LAMP * light.lamp + SKY * light.sky * (0.6 + 0.4 * normal.z as f32) + bounce;
     let half = (towards_lamp() + camera.towards).normalize();
     let is_lit = if light.lamp > 0.0 { 1.0 } else { 0.0 };
     let gloss = GLOSS * is_lit * (normal.dot(half).max(0.0) as f32).powi(POLISH);
@@ -171,7 +183,7 @@ fn encode(raster: &Raster, shade: impl Fn(usize) -> [f32; 3]) -> Result<Vec<u8>,
     let mut picture = Pixmap::new(size(width)?, size(height)?).ok_or(ExportError::Picture)?;
     for (at, pixel) in picture.pixels_mut().iter_mut().enumerate() {
         let mut sum = [0.0; 3];
-        for cell in cells_of(raster, (height - 1 - at / width) * width + at % width) {
+        for cell in cells_of(raster, CELLS, (height - 1 - at / width) * width + at % width) {
             sum.iter_mut().zip(shade(cell)).for_each(|(sum, c)| *sum += c.min(1.0) / (CELLS * CELLS) as f32);
         }
         let [r, g, b] = sum.map(encoded);

@@ -8,10 +8,12 @@
 //!
 //! Excluded: what is too narrow ([`super::keep`]), and what becomes of it ([`super::grow`]).
 
+use std::num::NonZero;
+
 use glam::DVec2;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
-use crate::planar::{EdgeIndex, Region, Sets};
+use crate::planar::{EdgeIndex, IndexedEdge, Region, Sets};
 
 /// A middle of an edge is no better than half of its length, and good from this part on.
 const CENTRED: f64 = 0.45;
@@ -19,6 +21,8 @@ const CENTRED: f64 = 0.45;
 const SAMPLES: usize = 15;
 /// Finer looks around the best of them, each at half the distance.
 const LOOKS: usize = 6;
+/// Fewer edges than that are not worth a thread.
+const LEAST_SHARE: usize = 1000;
 /// The most points that one edge of a contour is divided by.
 const MOST_POINTS: f64 = 10_000.0;
 
@@ -26,7 +30,8 @@ const MOST_POINTS: f64 = 10_000.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Node {
     pub(super) at: DVec2,
-    /// How far it is from the nearest contour, in millimetres: half of the width here. Zero at the end of a tip.
+    /// How far it is from the nearest contour, in millimetres: half of the width here, up to [`Fineness::hold`]. Zero at the
+    /// end of a tip.
     pub(super) radius: f64,
     /// The least node that it hangs together with.
     pub(super) part: usize,
@@ -60,15 +65,19 @@ pub(super) fn cores(region: &Region, index: &EdgeIndex, fineness: &Fineness) -> 
     let mut cores = [Core::default(), Core::default()];
     let side_of = |is_ink: bool| usize::from(!is_ink);
     let mut crossing = vec![usize::MAX; mesh.num_undirected_edges()];
-    for edge in mesh.undirected_edges().filter(|edge| !edge.is_constraint_edge()) {
-        let Some(face) = edge.as_directed().face().as_inner() else { continue };
-        let side = side_of(ink[face.index()]);
+    let crossed = mesh.undirected_edges().filter(|edge| !edge.is_constraint_edge()).filter_map(|edge| {
+        let face = edge.as_directed().face().as_inner()?;
         let ends = edge.positions().map(|p| DVec2::new(p.x, p.y));
-        crossing[edge.index()] =
-            cores[side].add(index, widest(index, ends, [fineness.enough[side], fineness.hold[side]]));
+        Some((edge.index(), side_of(ink[face.index()]), ends))
+    });
+    let crossed: Vec<(usize, usize, [DVec2; 2])> = crossed.collect();
+    let find = |&(_, side, ends): &_| widest(index, ends, [fineness.enough[side], fineness.hold[side]]);
+    for (&(edge, side, _), found) in crossed.iter().zip(on_all_cores(&crossed, find)) {
+        crossing[edge] = cores[side].add(found);
     }
     for face in mesh.inner_faces() {
-        let core = &mut cores[side_of(ink[face.index()])];
+        let side = side_of(ink[face.index()]);
+        let core = &mut cores[side];
         let edges = face.adjacent_edges().map(|edge| edge.as_undirected());
         let open: Vec<usize> =
             edges.iter().filter(|e| !e.is_constraint_edge()).map(|e| crossing[e.index()]).collect();
@@ -80,17 +89,17 @@ pub(super) fn cores(region: &Region, index: &EdgeIndex, fineness: &Fineness) -> 
                 let open = edges.iter().find(|e| !e.is_constraint_edge()).expect("there is one");
                 let ends = open.positions().map(|p| DVec2::new(p.x, p.y));
                 let tip = corners.into_iter().find(|c| !ends.contains(c)).unwrap_or(corners[0]);
-                let end = core.add(index, tip);
+                let end = core.add(Found { at: tip, radius: 0.0 });
                 core.links.push([a, end]);
             }
             // Ways meet in the middle, or where one of them crosses its edge if that is wider: a triangle with a corner
             // in a notch has its middle near the notch.
             _ => {
-                let middle = middle(corners);
-                let wider = open.iter().copied().filter(|&a| core.nodes[a].radius > radius(index, middle));
+                let middle = Found::new(index, middle(corners), fineness.hold[side]);
+                let wider = open.iter().copied().filter(|&a| core.nodes[a].radius > middle.radius);
                 let widest =
                     wider.reduce(|a, b| if core.nodes[b].radius > core.nodes[a].radius { b } else { a });
-                let meet = widest.unwrap_or_else(|| core.add(index, middle));
+                let meet = widest.unwrap_or_else(|| core.add(middle));
                 core.links.extend(open.iter().filter(|&&a| a != meet).map(|&a| [a, meet]));
             }
         }
@@ -99,9 +108,27 @@ pub(super) fn cores(region: &Region, index: &EdgeIndex, fineness: &Fineness) -> 
     cores
 }
 
+/// What `work` gives for each of `items`, in their order.
+fn on_all_cores<T: Sync, U: Send>(items: &[T], work: impl Fn(&T) -> U + Sync) -> Vec<U> {
+    let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
+    let share = items.len().div_ceil(threads).max(LEAST_SHARE);
+    let work = |items: &[T]| items.iter().map(&work).collect::<Vec<U>>();
+    std::thread::scope(|scope| {
+        let work = &work;
+        let mut shares = items.chunks(share);
+        let own = shares.next().unwrap_or_default();
+        let others: Vec<_> = shares.map(|items| scope.spawn(move || work(items))).collect();
+        let mut done = work(own);
+        for other in others {
+            done.extend(other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+        }
+        done
+    })
+}
+
 impl Core {
-    fn add(&mut self, index: &EdgeIndex, at: DVec2) -> usize {
-        self.nodes.push(Node { at, radius: radius(index, at), part: usize::MAX });
+    fn add(&mut self, Found { at, radius }: Found) -> usize {
+        self.nodes.push(Node { at, radius, part: usize::MAX });
         self.nodes.len() - 1
     }
 
@@ -126,6 +153,20 @@ impl Core {
     }
 }
 
+/// A point with its distance to the nearest contour, up to what need not be measured.
+#[derive(Debug, Clone, Copy)]
+struct Found {
+    at: DVec2,
+    radius: f64,
+}
+
+impl Found {
+    fn new(index: &EdgeIndex, at: DVec2, hold: f64) -> Self {
+        let radius = |edge: &IndexedEdge| edge.nearest(at).distance(at).min(hold);
+        Self { at, radius: index.nearest_within(at, hold).map_or(hold, radius) }
+    }
+}
+
 /// The distance to the nearest contour.
 pub(super) fn radius(index: &EdgeIndex, at: DVec2) -> f64 {
     index.nearest(at).map_or(f64::INFINITY, |edge| edge.nearest(at).distance(at))
@@ -133,20 +174,40 @@ pub(super) fn radius(index: &EdgeIndex, at: DVec2) -> f64 {
 
 /// The point where an edge of the triangulation is crossed: its middle if that is as wide as matters or as can be, or
 /// else the point farthest from all contours. An edge shorter than what is wide enough is narrow wherever it is crossed.
-fn widest(index: &EdgeIndex, [a, b]: [DVec2; 2], [enough, hold]: [f64; 2]) -> DVec2 {
-    let (middle, length) = (a.midpoint(b), a.distance(b));
-    if length < 2.0 * enough || radius(index, middle) >= hold.min(CENTRED * length) {
+fn widest(index: &EdgeIndex, [a, b]: [DVec2; 2], [enough, hold]: [f64; 2]) -> Found {
+    let (middle, length) = (Found::new(index, a.midpoint(b), hold), a.distance(b));
+    if length < 2.0 * enough || middle.radius >= hold.min(CENTRED * length) {
         return middle;
     }
-    let at = |t: f64| (radius(index, a.lerp(b, t)), t);
-    let higher = |x: (f64, f64), y: (f64, f64)| if y.0 > x.0 { y } else { x };
+    let at = |t: f64| (Found::new(index, a.lerp(b, t), hold), t);
     let mut step = 1.0 / (SAMPLES + 1) as f64;
-    let mut best = (1..=SAMPLES).map(|i| at(i as f64 * step)).fold(at(0.5), higher);
+    let mut best = (middle, 0.5);
+    // From an end, and from one point to the next, the distance to the contours rises by no more than the way.
+    let mut last = (0.0, 0.0);
+    for t in (1..=SAMPLES).map(|i| i as f64 * step) {
+        let most = (last.0 + (t - last.1) * length).min((1.0 - t) * length);
+        if most > best.0.radius {
+            let found = at(t);
+            last = (found.0.radius, t);
+            if found.0.radius > best.0.radius {
+                best = found;
+            }
+        }
+    }
     for _ in 0..LOOKS {
         step *= 0.5;
-        best = higher(higher(best, at(best.1 - step)), at(best.1 + step));
+        for t in [best.1 - step, best.1 + step] {
+            // As wide as matters.
+            if best.0.radius >= hold {
+                return best.0;
+            }
+            let found = at(t);
+            if found.0.radius > best.0.radius {
+                best = found;
+            }
+        }
     }
-    a.lerp(b, best.1)
+    best.0
 }
 
 /// The circumcentre of a triangle if it is inside, or else the centroid.

@@ -11,6 +11,10 @@ use glam::DVec2;
 use super::stroke::Stroke;
 use crate::planar::{Contour, FillRule, Grid, GridPoint, Region, boundaries};
 
+/// Strokes that are united at a time. More, and what they cover twice is cut up again and again; fewer, and each outline
+/// goes through more rounds.
+const FEW: usize = 16;
+
 /// What bounds the growth.
 pub(super) struct Bounds<'a> {
     /// Strokes that are not grown into.
@@ -31,14 +35,15 @@ pub(super) fn grown(
     other: &[DVec2],
 ) -> Region {
     let grid = set.grid();
-    let covered = |strokes: &[Stroke]| {
-        let polygons: Vec<Vec<GridPoint>> =
-            strokes.iter().map(|stroke| stroke.polygon(grid, bounds.chord_mm)).collect();
-        paths(&boundaries(&polygons, FillRule::NonZero))
-    };
+    let covered = |strokes: &[Stroke]| covered(strokes, grid, bounds.chord_mm);
+    let (grown, guarded) = std::thread::scope(|scope| {
+        let guarded = scope.spawn(|| covered(bounds.guards));
+        let grown = covered(strokes);
+        (grown, guarded.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+    });
     // Positive where a stroke is (1), in the box (1 less 1), and no guard (−1); or where the set is (3).
-    let mut layers = covered(strokes);
-    layers.extend(covered(bounds.guards).into_iter().map(reversed));
+    let mut layers = grown;
+    layers.extend(guarded.into_iter().map(reversed));
     layers.push(rectangle(grid, bounds.within));
     let around = around(set, bounds.within);
     layers.push(reversed(around));
@@ -46,6 +51,18 @@ pub(super) fn grown(
         layers.extend(set.contours().map(|contour| contour.points().to_vec()));
     }
     tidied(Region::fill(grid, &layers, FillRule::Positive), own, other)
+}
+
+/// The boundary of all that strokes cover. Those that follow each other overlap many times over, so they are united a few
+/// at a time: of each few hardly more than the outline is left for the next round.
+fn covered(strokes: &[Stroke], grid: Grid, chord_mm: f64) -> Vec<Vec<GridPoint>> {
+    let united = |polygons: &[Vec<GridPoint>]| paths(&boundaries(polygons, FillRule::NonZero));
+    let polygons: Vec<Vec<GridPoint>> = strokes.iter().map(|stroke| stroke.polygon(grid, chord_mm)).collect();
+    let mut few: Vec<Vec<Vec<GridPoint>>> = polygons.chunks(FEW).map(united).collect();
+    while few.len() > FEW {
+        few = few.chunks(FEW).map(|few| united(&few.concat())).collect();
+    }
+    united(&few.concat())
 }
 
 /// What is not in `set`, inside of `frame`.
