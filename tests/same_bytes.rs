@@ -40,6 +40,24 @@ fn one_thread_two_threads_and_again() {
     }
 }
 
+/// What a refusal looks for, it looks for on several threads.
+#[test]
+fn a_refusal_says_the_same_again() {
+    let room = Room::with(&["lace.svg", "vine.svg"]);
+    for job in [
+        "band lace.svg --along line:120mm --components 1 --holes 12",
+        "band vine.svg --along line:60mm --components 40 --holes 0",
+    ] {
+        let said = || {
+            let finished = Finished::of(&mut room.command(&format!("{job} -o out.svg")));
+            assert_eq!(finished.code, 3, "{job}: {}", finished.stderr);
+            finished.stderr
+        };
+        let first = said();
+        assert!((0..3).all(|_| said() == first), "{job}: {first}");
+    }
+}
+
 #[test]
 fn seeds_differ_and_none_is_better_than_the_optimum() {
     let room = Room::with(&["vine.svg"]);

@@ -9,7 +9,8 @@ use openwork::pieces::{Catalogue, CostWeights};
 use openwork::planar::{FillRule, Grid, GridPoint, Region, Tolerances};
 use openwork::reeb::{ReebGraph, Slicing, SlicingRule};
 use openwork::solver::{
-    Census, Nearest, Problem, Random, Refusal, Step, Tally, Unsolved, best, canonical, explain, solve, tally,
+    Census, Nearest, Problem, Random, Refusal, Step, Tally, Unsolved, best, canonical, explain,
+    is_impossible, solve, solve_unless, tally,
 };
 use openwork::topology::{Descriptor, Goal, Shape, Topology, Wanted};
 use proptest::prelude::*;
@@ -133,6 +134,23 @@ fn check(pieces: &Pieces, request: &Request) -> Result<bool, TestCaseError> {
             |m: &Made| problem.window.contains(&m.length) && m.is_in_band && goal.admits(m.topology);
         let least = all.iter().filter(|m| admitted(m)).map(|m| m.cost).min();
         check_all(&problem, goal, all.iter().filter(|m| admitted(m)).collect())?;
+        for effort_limit in SMALL_EFFORTS {
+            let hurried = Problem { effort_limit, ..problem.clone() };
+            match solve(&hurried, goal) {
+                Ok(solution) => {
+                    let made = make(&problem, &solution.sequence);
+                    let is_valid = made.is_some_and(|m| admitted(&m) && m.cost == solution.cost);
+                    prop_assert!(is_valid, "{:?} with {}", solution, effort_limit);
+                    let bound = solution.cost - solution.gap;
+                    prop_assert!(least.is_some_and(|least| bound <= least && least <= solution.cost));
+                }
+                Err(Unsolved::Infeasible) => prop_assert_eq!(least, None, "{:?} with {}", goal, effort_limit),
+                Err(Unsolved::TooLarge { .. }) => {}
+            }
+        }
+        prop_assert!(least.is_none() || !is_impossible(&problem, goal), "{:?} is possible", goal);
+        let hopeless = solve_unless(&problem, goal, &|| least.is_none());
+        prop_assert_eq!(hopeless.is_ok(), solve(&problem, goal).is_ok());
         match solve(&problem, goal) {
             Ok(solution) => {
                 let Some(least) = least else {
@@ -169,6 +187,9 @@ fn check(pieces: &Pieces, request: &Request) -> Result<bool, TestCaseError> {
     }
     Ok(true)
 }
+
+/// Work after which the search for the optimum is given up: at once, and soon.
+const SMALL_EFFORTS: [usize; 3] = [0, 1, 50];
 
 /// How many of the cheapest are listed.
 const LISTED: usize = 6;
@@ -248,6 +269,12 @@ fn check_refusal(
         prop_assert!(is_true && distance == least, "{:?} of {:?}", found, counts);
         Ok(())
     };
+    // The other number is left out only where it cannot be had.
+    let others = |found: Option<Nearest>, other: Goal| {
+        let is_alone = found.is_some_and(|found| found.is_alone);
+        prop_assert!(!is_alone || with(other).next().is_none(), "{:?} goes with {:?}", found, other);
+        Ok(if is_alone { Goal { components: None, holes: None, ..goal } } else { other })
+    };
     match refusal {
         Refusal::Length { below, above } => {
             prop_assert!(in_window.is_empty());
@@ -262,13 +289,14 @@ fn check_refusal(
             prop_assert!(in_band.iter().all(|m| !m.topology.closed_pattern));
         }
         Refusal::Components { nearest } => {
-            let others = Goal { components: None, holes: None, ..goal };
-            let counts = with(others).map(|m| m.topology.components).collect();
+            let counts = with(others(nearest, Goal { components: None, ..goal })?)
+                .map(|m| m.topology.components)
+                .collect();
             is_nearest(nearest, goal.components, counts)?;
         }
         Refusal::Holes { nearest } => {
-            let others = Goal { components: None, holes: None, ..goal };
-            let counts = with(others).map(|m| m.topology.holes).collect();
+            let counts =
+                with(others(nearest, Goal { holes: None, ..goal })?).map(|m| m.topology.holes).collect();
             is_nearest(nearest, goal.holes, counts)?;
         }
         Refusal::Both { each_exists, nearest_holes } => {

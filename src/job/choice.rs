@@ -61,7 +61,7 @@ pub fn choose(
     choice: Choice,
     counted: bool,
 ) -> Result<Chosen, PlanError> {
-    chosen(catalogue, options, choice, counted, Prospect::OPEN)
+    chosen(catalogue, options, choice, counted, Prospect::UNKNOWN)
         .map_err(|error| why(catalogue, options, error))
 }
 
@@ -141,7 +141,7 @@ fn perturbed(
             break;
         }
         let options = PlanOptions { seed: Some(random.bits()), ..*options };
-        let found = first_fit(catalogue, &options, Prospect::OPEN)?;
+        let found = first_fit(catalogue, &options, Prospect::UNKNOWN)?;
         if seen.insert(canonical(&found.sequence, options.shape)) {
             plans.push(found);
         }

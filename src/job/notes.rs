@@ -143,8 +143,7 @@ fn given_up(job: &BandJob, plan: &Plan) -> Option<String> {
             "the search was given up at {limit}, as there are many ways to try: the best found {how_far}"
         ),
         false => format!(
-            "the search was given up after {:.1} million partial runs: the best found {how_far}; a larger --effort (or --memory-limit, {limit}) or fewer constraints may give a better one",
-            plan.labels as f64 / 1e6
+            "the search was given up at its --effort or --memory-limit ({limit}): the best found {how_far}; more of them or fewer constraints may give a better one"
         ),
     })
 }
@@ -279,7 +278,7 @@ mod tests {
         };
         assert_eq!((given_up(&job, &plan(3.0, None)), given_up(&job, &plan(3.0, Some(0.0)))), (None, None));
         let told = given_up(&job, &plan(3.0, Some(0.6))).unwrap();
-        assert!(told.contains("--memory-limit, 8 MB") && told.contains("costs at most 25 % more"), "{told}");
+        assert!(told.contains("--memory-limit (8 MB)") && told.contains("costs at most 25 % more"), "{told}");
         assert!(given_up(&job, &plan(3.0, Some(3.0))).unwrap().contains("nothing is known"));
         // A limit that nobody typed is not blamed on the option.
         job.memory_limit = 1 << 20;

@@ -97,7 +97,7 @@ pub const DEFAULT_MEMORY_LIMIT: usize = 2 << 30;
 /// # Errors
 /// [`PlanError`] when the constraints cannot be met or the search is too large.
 pub fn plan(catalogue: &Catalogue, options: &PlanOptions) -> Result<Plan, PlanError> {
-    first_fit(catalogue, options, Prospect::OPEN).map_err(|error| why(catalogue, options, error))
+    first_fit(catalogue, options, Prospect::UNKNOWN).map_err(|error| why(catalogue, options, error))
 }
 
 /// Why there is no sequence, when [`first_fit`] found none.
@@ -126,21 +126,23 @@ pub(super) fn is_impossible(catalogue: &Catalogue, options: &PlanOptions) -> boo
     })
 }
 
-/// What is thought of a search before it.
+/// What is thought of a search before it, which decides where it begins.
 #[derive(Clone, Copy)]
 pub(super) enum Prospect<'a> {
-    /// Nothing speaks against it. Whether there is no sequence for any ε is asked once that is not plain.
-    Good(&'a dyn Fn() -> bool),
-    /// A part of what may be joined was not enough, so there is likely none.
+    /// Nothing speaks against a sequence, so the least ε comes first. When there is none soon, the function is asked
+    /// whether it is hopeless: whether there is none for any ε.
+    Open(&'a dyn Fn() -> bool),
+    /// A part of what may be joined was not enough, so there is likely none, and the widest ε comes first.
     Poor,
 }
 
 impl Prospect<'_> {
-    /// Nothing speaks against it, and nothing can tell.
-    pub(super) const OPEN: Self = Self::Good(&|| false);
+    /// Nothing speaks against a sequence, and nothing but the search can tell.
+    pub(super) const UNKNOWN: Self = Self::Open(&|| false);
 }
 
-/// The best sequence for the least ε with which there is one.
+/// The best sequence for the least ε with which one was found. Where a search for a lesser one was given up, there may be
+/// others.
 pub(super) fn first_fit(
     catalogue: &Catalogue,
     options: &PlanOptions,
@@ -148,31 +150,30 @@ pub(super) fn first_fit(
 ) -> Result<Plan, Unsolved> {
     let bin_mm = bin_mm(catalogue, options.length_mm);
     let mut problem = problem(catalogue, options, bin_mm);
-    let is_none = match prospect {
-        Prospect::Good(is_none) => is_none,
+    let is_hopeless = match prospect {
+        Prospect::Open(is_hopeless) => is_hopeless,
         Prospect::Poor => &|| false,
     };
     let mut within = |epsilon: f64| {
         // No whole number of bins may lie so close to a short length.
         problem.window = window(options.length_mm, epsilon, bin_mm).ok_or(Unsolved::Infeasible)?;
-        solver::solve_unless(&problem, options.goal, is_none).map(|solution| (solution, epsilon))
+        solver::solve_unless(&problem, options.goal, is_hopeless).map(|solution| (solution, epsilon))
     };
     let [first, .., last] = EPSILONS;
     let mut narrower = &EPSILONS[..EPSILONS.len() - 1];
     let mut found = Err(Unsolved::Infeasible);
-    if let Prospect::Good(_) = prospect {
+    if let Prospect::Open(_) = prospect {
         found = within(first);
         narrower = &narrower[1..];
     }
-    if found == Err(Unsolved::Infeasible) && !is_none() {
+    if found == Err(Unsolved::Infeasible) && !is_hopeless() {
         // What cannot be had within the last cannot be had within any, so that refusals come soon.
-        found = match within(last) {
-            Err(Unsolved::Infeasible) => Err(Unsolved::Infeasible),
-            widest => {
-                let mut closer = narrower.iter().map(|&epsilon| within(epsilon));
-                closer.find(|found| *found != Err(Unsolved::Infeasible)).unwrap_or(widest)
-            }
-        };
+        found = within(last);
+        if found != Err(Unsolved::Infeasible) {
+            // One that was given up closer to the length leaves the others.
+            let closer = narrower.iter().find_map(|&epsilon| within(epsilon).ok());
+            found = closer.map_or(found, Ok);
+        }
     }
     found.map(|(solution, epsilon)| finish(catalogue, options, solution, epsilon))
 }
@@ -291,4 +292,54 @@ fn noise(seed: u64, from: usize, to: usize) -> f64 {
         z ^= z >> 27;
     }
     (z >> 11) as f64 / (1u64 << 53) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::builder::BandBuilder;
+    use super::super::cut::{read_exemplar, slice};
+    use super::*;
+
+    // Wherever the search begins, it comes to the least ε of all; also where nothing can be had.
+    #[test]
+    fn the_least_epsilon_is_found_from_either_end() {
+        // Few holes leave few lengths.
+        let job = BandBuilder::new("fixtures/exemplars/lattice.svg", "line:60mm".parse().unwrap())
+            .components(1)
+            .holes(8)
+            .build()
+            .unwrap();
+        let cut = slice(&job, read_exemplar(&job).unwrap()).unwrap();
+        let mut met = Vec::new();
+        for length_mm in (4..60).map(f64::from) {
+            let options = PlanOptions {
+                shape: Shape::Open,
+                length_mm,
+                height_mm: cut.height_mm,
+                goal: job.options.goal,
+                weights: job.options.weights,
+                seed: None,
+                variety: None,
+                memory_limit: DEFAULT_MEMORY_LIMIT,
+                effort: None,
+            };
+            let ascending = EPSILONS.into_iter().find_map(|epsilon| {
+                let found = solver::solve(&problem_of(&cut.catalogue, &options, epsilon), options.goal);
+                Some((found.ok()?.cost, epsilon))
+            });
+            for prospect in [Prospect::UNKNOWN, Prospect::Poor] {
+                let found = first_fit(&cut.catalogue, &options, prospect);
+                let found = found.ok().map(|plan| ((plan.cost * 1e6).round() as Cost, plan.epsilon));
+                assert_eq!(found, ascending, "{length_mm} mm");
+            }
+            met.push(ascending.map(|(_, epsilon)| epsilon));
+            // What is thought to be hopeless is not looked for beyond the first ε.
+            let hopeless = first_fit(&cut.catalogue, &options, Prospect::Open(&|| true));
+            assert!(hopeless.is_err() || ascending.is_some_and(|(_, epsilon)| epsilon == EPSILONS[0]));
+        }
+        assert!(
+            met.contains(&None) && EPSILONS.iter().all(|&epsilon| met.contains(&Some(epsilon))),
+            "{met:?}"
+        );
+    }
 }

@@ -53,7 +53,7 @@ pub(super) fn plan_way(
     clock: &mut Clock<'_>,
 ) -> Option<(Plan, Topology)> {
     let options = plan_options(job, cut, map);
-    let plan = clock.time(Stage::Solve, || first_fit(&cut.catalogue, &options, Prospect::OPEN)).ok()?;
+    let plan = clock.time(Stage::Solve, || first_fit(&cut.catalogue, &options, Prospect::UNKNOWN)).ok()?;
     Some(with_topology(cut, &options, plan))
 }
 
@@ -94,18 +94,19 @@ pub(super) fn with_any_successors(
     let all = OnceCell::new();
     let all_joins = || all.get_or_init(|| cut.with_all_successors());
     // What cannot be had with all joins cannot be had with the cheapest few.
-    let none = OnceCell::new();
-    let is_none =
-        || *none.get_or_init(|| is_impossible(all_joins().as_ref().unwrap_or(&cut.catalogue), options));
-    let found = clock
-        .time(Stage::Solve, || chosen(&cut.catalogue, options, choice, counted, Prospect::Good(&is_none)));
+    let hopeless = OnceCell::new();
+    let is_hopeless =
+        || *hopeless.get_or_init(|| is_impossible(all_joins().as_ref().unwrap_or(&cut.catalogue), options));
+    let found = clock.time(Stage::Solve, || {
+        chosen(&cut.catalogue, options, choice, counted, Prospect::Open(&is_hopeless))
+    });
     if found != Err(Unsolved::Infeasible) {
         return found;
     }
-    let is_none = is_none();
+    let is_hopeless = is_hopeless();
     let Some(all) = all.into_inner().flatten() else { return found };
     cut.admit(all);
-    if is_none {
+    if is_hopeless {
         return found;
     }
     clock.time(Stage::Solve, || chosen(&cut.catalogue, options, choice, counted, Prospect::Poor))

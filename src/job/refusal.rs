@@ -53,11 +53,16 @@ pub(super) fn message(
 }
 
 fn nearest_hint(option: &str, nearest: Option<Nearest>) -> String {
+    let alone = match (nearest, option) {
+        (Some(Nearest { is_alone: true, .. }), "--holes") => ", without --components",
+        (Some(Nearest { is_alone: true, .. }), _) => ", without --holes",
+        _ => "",
+    };
     match nearest {
-        Some(Nearest { count, is_proven: true }) => {
-            format!("the nearest that can be had is {option} {count}")
+        Some(Nearest { count, is_proven: true, .. }) => {
+            format!("the nearest that can be had is {option} {count}{alone}")
         }
-        Some(Nearest { count, is_proven: false }) => format!("{option} {count} can be had"),
+        Some(Nearest { count, is_proven: false, .. }) => format!("{option} {count} can be had{alone}"),
         None => format!("leave out {option} to see what can be had"),
     }
 }

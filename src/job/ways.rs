@@ -135,7 +135,7 @@ fn relaxed(goal: Goal) -> Vec<Goal> {
 
 fn plan_for(options: &PlanOptions, goal: Goal, memory_limit: usize, cut: &Cut) -> Option<Plan> {
     let options = PlanOptions { goal, memory_limit, ..*options };
-    first_fit(&cut.catalogue, &options, Prospect::OPEN).ok()
+    first_fit(&cut.catalogue, &options, Prospect::UNKNOWN).ok()
 }
 
 fn bridged_ways(

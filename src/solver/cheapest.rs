@@ -11,9 +11,9 @@
 //! stood for one that stays in the band, and the walks are taken again with the drift in the state.
 //!
 //! After the work that may be done, which is that of as many labels as the memory limit holds at most, a beam finds a run
-//! if it can. The last threshold at
-//! which nothing was found says how far from the optimum that may be. It is the work that is counted and not the labels
-//! that are left, so that the limit bounds the time as well.
+//! if it can, with a few times as much. The last threshold at which nothing was found says how far from the optimum that
+//! may be. It is the work that is counted and not the labels that are left, so that the limit bounds the time as well, but
+//! for that of making estimates, whose passes have limits of their own.
 
 use super::estimates::Level;
 use super::family::{Family, families};
@@ -47,10 +47,6 @@ const FEW: usize = 8;
 const LABELS_PER_RUN: usize = 16;
 /// By how much the effort should grow from one threshold to the next, at least and at most.
 const GROWTH: [usize; 2] = [3, 12];
-/// Runs of each length that the beam keeps; widened until a run is found.
-const BEAMS: [usize; 3] = [300, 3_000, 30_000];
-/// Runs of each length that it keeps at least.
-const NARROWEST_BEAM: usize = 30;
 
 /// The cheapest run, or ring, that `automaton` accepts. Whether it `is_hopeless` is asked before the first dear estimates
 /// are made. With the effort that it took.
@@ -91,26 +87,27 @@ fn short(problem: &Problem<'_>, families: &[Family]) -> usize {
     (additions / ADDITIONS_PER_LABEL).clamp(least, most)
 }
 
-struct Cheapest<'p> {
-    problem: &'p Problem<'p>,
+/// A search for the cheapest run.
+pub(super) struct Cheapest<'p> {
+    pub(super) problem: &'p Problem<'p>,
     is_hopeless: &'p dyn Fn() -> bool,
-    families: Vec<Family>,
+    pub(super) families: Vec<Family>,
     /// Runs of at most this estimate are looked at.
     threshold: Cost,
     /// No run that meets the constraints costs less.
     floor: Cost,
     /// The best so far: pieces, cost, cost with penalties.
-    best: Option<(Vec<usize>, Cost, Cost)>,
-    by_drift: bool,
+    pub(super) best: Option<(Vec<usize>, Cost, Cost)>,
+    pub(super) by_drift: bool,
     /// As [`short`] says.
     short: usize,
     /// Which estimates were found to be worth while.
-    level: Level,
-    labels: usize,
+    pub(super) level: Level,
+    pub(super) labels: usize,
     /// The work of making dear estimates, counted in labels.
     learning: usize,
     /// The work of all walks, counted in labels.
-    effort: usize,
+    pub(super) effort: usize,
     /// Of it, what was done before the estimates were those of the level, and runs told apart by drift or not.
     effort_before: usize,
     /// Of the last walks with one threshold.
@@ -171,7 +168,7 @@ impl<'p> Cheapest<'p> {
             let round = self.round(automaton, patience.min(leap));
             if round.is_cut_short {
                 if self.effort > patience {
-                    if self.patience().is_none() {
+                    if self.patience().is_none() || self.effort >= self.problem.effort_limit {
                         return self.beam(automaton);
                     }
                     self.learn(automaton);
@@ -314,7 +311,7 @@ impl<'p> Cheapest<'p> {
 
     /// Finds out what cannot be, and makes the estimates of the level, for the families that the threshold has
     /// reached; as they learn, it rises, and reaches others.
-    fn catch_up(&mut self, automaton: &mut Automaton<'_>) {
+    pub(super) fn catch_up(&mut self, automaton: &mut Automaton<'_>) {
         let (problem, goal, level) = (self.problem, automaton.goal(), self.level);
         self.raise();
         loop {
@@ -343,7 +340,7 @@ impl<'p> Cheapest<'p> {
     }
 
     /// Lifts the threshold to the least estimate.
-    fn raise(&mut self) {
+    pub(super) fn raise(&mut self) {
         let least = self.families.iter().map(Family::estimate).min().unwrap_or(NEVER);
         let best = self.best.as_ref().map_or(NEVER, |&(_, _, total)| total);
         self.floor = self.floor.max(least.min(best));
@@ -361,87 +358,7 @@ impl<'p> Cheapest<'p> {
         fits.min(self.problem.effort_limit)
     }
 
-    /// The best run that a beam finds, member by member.
-    fn beam(&mut self, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
-        let mut left = self.problem.memory_limit / LABEL_BYTES;
-        let layers = *self.problem.window.end() as usize;
-        for width in BEAMS {
-            // A long run has to be walked through to its end all the same, so its beam is narrower.
-            let width = width.min(left / layers.max(1)).max(NARROWEST_BEAM);
-            for (family, member) in self.in_order() {
-                if self.best.is_some() || left == 0 {
-                    break;
-                }
-                left = left.saturating_sub(self.walk_member(automaton, (family, member), width));
-            }
-        }
-        self.finish(automaton)
-    }
-
-    /// The best run that the paper's table finds with the penalty on repetition (Zhou 2014 §3.7): of the runs of a
-    /// length, as many as can be looked at are kept.
-    fn varied(&mut self, automaton: &mut Automaton<'_>) -> Result<Solution, Unsolved> {
-        /// Terms of correlations that are added up for one member.
-        const PATIENCE: usize = 400_000_000;
-        /// Members that are looked at, the most promising first.
-        const MEMBERS: usize = 6;
-        self.level = self.level.max(Level::Topology);
-        self.catch_up(automaton);
-        let joins: usize =
-            self.problem.steps.iter().map(Vec::len).sum::<usize>() / self.problem.pieces().max(1);
-        let layers = *self.problem.window.end() as usize;
-        let narrowest = self.problem.widths.iter().copied().min().unwrap_or(1) as usize;
-        let terms = layers.saturating_mul(joins.max(1)).saturating_mul(layers / narrowest / 4 + 1);
-        let width = (PATIENCE / terms.max(1)).clamp(8, 400);
-        for width in [width, width * 8] {
-            for at in self.in_order().into_iter().take(MEMBERS) {
-                self.walk_member(automaton, at, width);
-            }
-            if self.best.is_some() {
-                break;
-            }
-        }
-        self.finish(automaton)
-    }
-
-    /// The members by family and number, the most promising first.
-    fn in_order(&self) -> Vec<(usize, usize)> {
-        let members = |f: usize| (0..self.families[f].members.len()).map(move |m| (f, m));
-        let mut all: Vec<(usize, usize)> = (0..self.families.len()).flat_map(members).collect();
-        all.sort_by_key(|&(f, m)| (self.families[f].members[m].estimate, f, m));
-        all
-    }
-
-    /// Walks over one member without a threshold, keeping so many runs of each length; the effort it took.
-    fn walk_member(
-        &mut self,
-        automaton: &mut Automaton<'_>,
-        (family, at): (usize, usize),
-        width: usize,
-    ) -> usize {
-        let family = &mut self.families[family];
-        let mut table = family.take_table(self.problem, at);
-        let member = &family.members[at];
-        let walk = Walk {
-            problem: self.problem,
-            scope: &member.scope,
-            pieces: &mut table,
-            estimates: &mut family.estimates,
-            threshold: NEVER - 1,
-            ceiling: self.best.as_ref().map_or(NEVER, |&(_, _, total)| total),
-            by_drift: self.by_drift,
-            width,
-            effort_limit: usize::MAX,
-        };
-        let passage = walk.run(automaton, Beyond::new(NEVER - 1));
-        family.keep_table(at, table);
-        self.labels += passage.labels;
-        self.effort += passage.effort;
-        self.best = passage.found.or(self.best.take());
-        passage.effort
-    }
-
-    fn finish(&mut self, automaton: &Automaton<'_>) -> Result<Solution, Unsolved> {
+    pub(super) fn finish(&mut self, automaton: &Automaton<'_>) -> Result<Solution, Unsolved> {
         let Self { floor, labels, .. } = *self;
         match self.best.take() {
             Some((sequence, cost, total)) => {

@@ -4,12 +4,12 @@
 //! along a run as costs do. A component has a leftmost place, in a piece where it reaches no portal on the left, unless
 //! it goes all the way round a ring; so components are at most as many as such places, and holes, which are components
 //! less χ, are at most as many as strands merge. One pass over the pieces takes next to no time where the graph of
-//! connections would be too large. Excluded: which strands are connected already, which [`super::counts`] knows.
+//! connections would be too large, and is not begun where it would take long all the same. Excluded: which strands are connected already, which [`super::counts`] knows.
 
 use std::collections::BTreeMap;
 
 use super::connectivity::{Connectivity, Counts, kinds};
-use super::counts::{Ranges, is_soon_ranged, ranges};
+use super::counts::{Ranges, is_soon_over, ranges};
 use super::graph::Scope;
 use super::problem::Problem;
 use crate::topology::{Descriptor, Shape};
@@ -18,7 +18,8 @@ use crate::topology::{Descriptor, Shape};
 /// components, taken off; χ, taken off; χ; holes of the pieces themselves, taken off.
 type Sums = [i64; 6];
 
-/// Bounds on the counts of the runs within `scope` in the window; `None` when there is no run.
+/// Bounds on the counts of the runs within `scope` in the window, which say nothing where the pass would take too long;
+/// `None` when there is no run.
 pub(super) fn bounds(problem: &Problem<'_>, scope: &Scope) -> Option<Ranges> {
     let gains: Vec<Sums> = problem.descriptors.iter().map(gain).collect();
     let kinds = kinds(problem, scope);
@@ -37,16 +38,19 @@ pub(super) fn bounds(problem: &Problem<'_>, scope: &Scope) -> Option<Ranges> {
         join(&mut met[place(problem.widths[first], kinds[first])], sums);
     }
     // Of pieces that are as wide and lead to the same, the most of each sum.
-    let joins: Vec<BTreeMap<(usize, u32), Option<Sums>>> = (0..n)
+    let joins: Vec<Vec<(usize, u32, Sums)>> = (0..n)
         .map(|piece| {
-            let mut joins = BTreeMap::new();
+            let mut joins: BTreeMap<(usize, u32), Option<Sums>> = BTreeMap::new();
             let steps = problem.steps[piece].iter().filter(|_| kinds[piece] == piece);
             for to in steps.map(|step| step.to).filter(|&to| scope.allowed[to]) {
                 join(joins.entry((kinds[to], problem.widths[to])).or_default(), gains[to]);
             }
-            joins
+            joins.into_iter().filter_map(|((to, width), gain)| Some((to, width, gain?))).collect()
         })
         .collect();
+    if !is_soon_over(problem, joins.iter().map(Vec::len).sum()) {
+        return Some(Ranges::ALL);
+    }
     let mut found = None;
     for length in 1..=longest {
         for kind in 0..n {
@@ -54,10 +58,8 @@ pub(super) fn bounds(problem: &Problem<'_>, scope: &Scope) -> Option<Ranges> {
             if scope.stop[kind].is_some() && problem.window.contains(&length) {
                 join(&mut found, sums);
             }
-            for (&(to, width), gain) in &joins[kind] {
-                if let Some(gain) = gain.filter(|_| length + width <= longest) {
-                    join(&mut met[place(length + width, to)], std::array::from_fn(|i| sums[i] + gain[i]));
-                }
+            for &(to, width, gain) in joins[kind].iter().filter(|join| length + join.1 <= longest) {
+                join(&mut met[place(length + width, to)], std::array::from_fn(|i| sums[i] + gain[i]));
             }
         }
     }
@@ -77,7 +79,7 @@ pub(super) fn ranges_or_bounds(
     scope: &Scope,
     graph: Option<&Connectivity>,
 ) -> Option<Ranges> {
-    match graph.filter(|graph| is_soon_ranged(problem, graph)) {
+    match graph.filter(|graph| is_soon_over(problem, graph.joins())) {
         Some(graph) => ranges(problem, graph),
         None => bounds(problem, scope),
     }

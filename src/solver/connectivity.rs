@@ -46,7 +46,6 @@ pub(super) struct Begin {
 }
 
 /// The graph.
-#[derive(Clone)]
 pub(super) struct Connectivity {
     /// The last piece of each node, or one that may be followed by the same.
     pieces: Vec<u32>,
@@ -56,6 +55,8 @@ pub(super) struct Connectivity {
     endings: Vec<Option<Counts>>,
     starts: Vec<Begin>,
     nodes: FxHashMap<(u32, u32), u32>,
+    /// For each piece the one whose nodes it shares.
+    kinds: Vec<usize>,
     /// Numbers of the ways of being connected.
     known: FxHashMap<Descriptor, u32>,
 }
@@ -67,12 +68,12 @@ impl Connectivity {
     /// The graph of all runs within `scope` of which the goal does not rule out a join by itself, with a node for each
     /// last piece; `None` when it has more than `limit` nodes.
     pub(super) fn new(problem: &Problem<'_>, goal: Goal, scope: &Scope, limit: usize) -> Option<Self> {
-        Self::explore(problem, goal, scope, &(0..problem.pieces()).collect::<Vec<_>>(), limit)
+        Self::explore(problem, goal, scope, (0..problem.pieces()).collect(), limit)
     }
 
     /// The same for counting only: last pieces that may be followed by the same have one node together.
     pub(super) fn of_kinds(problem: &Problem<'_>, goal: Goal, scope: &Scope, limit: usize) -> Option<Self> {
-        Self::explore(problem, goal, scope, &kinds(problem, scope), limit)
+        Self::explore(problem, goal, scope, kinds(problem, scope), limit)
     }
 
     /// The graph whose nodes are those of the piece that stands for each.
@@ -80,7 +81,7 @@ impl Connectivity {
         problem: &Problem<'_>,
         goal: Goal,
         scope: &Scope,
-        kinds: &[usize],
+        kinds: Vec<usize>,
         limit: usize,
     ) -> Option<Self> {
         let mut graph = Self {
@@ -90,6 +91,7 @@ impl Connectivity {
             endings: Vec::new(),
             starts: Vec::new(),
             nodes: FxHashMap::default(),
+            kinds,
             known: FxHashMap::default(),
         };
         let mut known: FxHashMap<Descriptor, u32> = FxHashMap::default();
@@ -99,7 +101,7 @@ impl Connectivity {
         for &(first, _) in &scope.starts {
             let (state, closes) = enter(&mut known, &mut states, &problem.descriptors[first]);
             if admits(goal, closes, states[state as usize].open()) {
-                let node = graph.meet(kinds[first] as u32, state, &mut queue);
+                let node = graph.meet(first, state, &mut queue);
                 graph.starts.push(Begin { node, width: problem.widths[first], closes });
             }
         }
@@ -122,7 +124,7 @@ impl Connectivity {
                     admits(goal, closes, run.open()).then_some((state, closes))
                 });
                 if let Some((state, closes)) = joined {
-                    let to = graph.meet(kinds[step.to] as u32, state, &mut queue);
+                    let to = graph.meet(step.to, state, &mut queue);
                     leaving.push(Edge { to, width: problem.widths[step.to], closes });
                 }
             }
@@ -135,7 +137,8 @@ impl Connectivity {
         Some(graph)
     }
 
-    fn meet(&mut self, piece: u32, state: u32, queue: &mut Vec<(u32, u32)>) -> u32 {
+    fn meet(&mut self, piece: usize, state: u32, queue: &mut Vec<(u32, u32)>) -> u32 {
+        let piece = self.kinds[piece] as u32;
         *self.nodes.entry((piece, state)).or_insert_with(|| {
             self.pieces.push(piece);
             queue.push((piece, state));
@@ -146,7 +149,7 @@ impl Connectivity {
     /// The node of the runs that end with `piece` and are connected like this, if there are any.
     pub(super) fn node(&self, piece: usize, connections: &Descriptor) -> Option<u32> {
         let state = self.known.get(connections)?;
-        self.nodes.get(&(piece as u32, *state)).copied()
+        self.nodes.get(&(self.kinds[piece] as u32, *state)).copied()
     }
 
     /// The number of nodes.

@@ -33,7 +33,7 @@ impl Caps {
 
 /// How a set lies in memory: rows of bits.
 #[derive(Clone, Copy)]
-struct Frame {
+pub(super) struct Frame {
     caps: Caps,
     rows: usize,
     words: usize,
@@ -55,7 +55,9 @@ pub(super) fn work_limit(problem: &Problem<'_>) -> usize {
 pub(super) fn work(problem: &Problem<'_>, graph: &Connectivity, caps: Caps) -> usize {
     let frame = Frame::new(caps);
     let longest = *problem.window.end() as usize;
-    longest.saturating_mul(graph.joins()).saturating_mul(frame.rows).saturating_mul(frame.words)
+    // A set has to be made and read even where nothing is joined.
+    let joins = graph.joins().max(graph.len());
+    longest.saturating_mul(joins).saturating_mul(frame.rows).saturating_mul(frame.words)
 }
 
 /// The counts of all runs in the window; `None` when the pass would take more than `most` word operations.
@@ -70,7 +72,7 @@ pub(super) fn counts(
     }
     let frame = Frame::new(caps);
     let longest = *problem.window.end() as usize;
-    let size = frame.rows * frame.words;
+    let size = frame.size();
     let n = graph.len();
     let layers = problem.widths.iter().max().map_or(1, |&w| w as usize) + 1;
     let mut sets = vec![0u64; layers * n * size];
@@ -109,11 +111,11 @@ pub(super) fn counts(
     Some(CountSet { frame, bits: found })
 }
 
-/// Whether a pass of [`ranges`] is worth its time.
-pub(super) fn is_soon_ranged(problem: &Problem<'_>, graph: &Connectivity) -> bool {
+/// Whether a pass for ranges over a graph with so many joins is worth its time.
+pub(super) fn is_soon_over(problem: &Problem<'_>, joins: usize) -> bool {
     let [least, most] = RANGES_WORK_LIMITS;
     let longest = *problem.window.end() as usize;
-    longest.saturating_mul(graph.joins()) <= problem.share(most).max(least)
+    longest.saturating_mul(joins) <= problem.share(most).max(least)
 }
 
 /// From the fewest to the most components and holes of the runs in the window; `None` when there is no run. Both
@@ -152,6 +154,12 @@ pub(super) struct Ranges {
 }
 
 impl Ranges {
+    /// Of runs of which nothing is known.
+    pub(super) const ALL: Self = Self {
+        least: Counts { components: 0, holes: 0 },
+        most: Counts { components: u32::MAX, holes: u32::MAX },
+    };
+
     const EMPTY: Self =
         Self { least: Counts { components: 0, holes: 0 }, most: Counts { components: 0, holes: 0 } };
 
@@ -172,14 +180,12 @@ impl Ranges {
 impl CountSet {
     /// Whether a run can have these counts; one that is not read is left out.
     pub(super) fn has(&self, counts: Counts) -> bool {
-        self.frame
-            .place(counts)
-            .is_some_and(|(row, bit)| self.bits[row * self.frame.words + bit / 64] & (1 << (bit % 64)) != 0)
+        self.frame.holds(&self.bits, counts)
     }
 }
 
 impl Frame {
-    fn new(caps: Caps) -> Self {
+    pub(super) fn new(caps: Caps) -> Self {
         // One count alone lies along the bits.
         let (rows, bits) = match (caps.components, caps.holes) {
             (Some(components), Some(holes)) => (components as usize + 1, holes as usize + 1),
@@ -187,6 +193,16 @@ impl Frame {
             (None, None) => (1, 1),
         };
         Self { caps, rows, words: bits.div_ceil(64) }
+    }
+
+    /// How many words a set has.
+    pub(super) fn size(&self) -> usize {
+        self.rows * self.words
+    }
+
+    /// Whether a set holds these counts; one that is not read is left out.
+    pub(super) fn holds(&self, set: &[u64], counts: Counts) -> bool {
+        self.place(counts).is_some_and(|(row, bit)| set[row * self.words + bit / 64] & (1 << (bit % 64)) != 0)
     }
 
     /// The row and the bit of these counts; `None` beyond the caps.
@@ -203,7 +219,7 @@ impl Frame {
     }
 
     /// Adds to `set` what `other` holds, with so much more closed. What lies beyond the caps may be lost.
-    fn add_shifted(&self, set: &mut [u64], other: &[u64], closes: Counts) {
+    pub(super) fn add_shifted(&self, set: &mut [u64], other: &[u64], closes: Counts) {
         let Some((rows, bits)) = self.place(closes) else { return };
         let (words, bits) = (bits / 64, bits % 64);
         for row in rows..self.rows {

@@ -14,6 +14,7 @@
 use std::sync::Arc;
 
 use super::classes::Classes;
+use super::completions::Completions;
 use super::connected::Connected;
 use super::graph::{Explored, Scope, Toll, of_pieces};
 use super::lengths::has_level_run;
@@ -21,7 +22,7 @@ use super::price::Start;
 use super::priced::{Passes, estimate};
 use super::problem::{Cost, Problem};
 use super::table::{NEVER, Table};
-use crate::topology::{Automaton, StateId};
+use crate::topology::{Automaton, Goal, StateId};
 
 /// Nodes of a graph at which it is given up: of one that is made soon, and of one that is made when much was searched.
 const NODE_LIMITS: [usize; 2] = [6_000, 60_000];
@@ -59,6 +60,8 @@ pub(super) struct Estimates {
     drifting: Option<Drifting<(StateId, i32)>>,
     /// And without the state.
     drifts: Option<Drifting<i32>>,
+    /// What a run may still count, made when only a beam can find one.
+    completions: Option<Completions>,
     /// Of the pieces alone, made when the drift is known and neither of the others is.
     pieces: Option<Passes>,
 }
@@ -162,6 +165,17 @@ impl Estimates {
         }
     }
 
+    /// Makes known which counts a run may still come to, if that is affordable.
+    pub(super) fn learn_completions(
+        &mut self,
+        problem: &Problem<'_>,
+        goal: Goal,
+        scope: &Scope,
+        scopes: usize,
+    ) {
+        self.completions = Completions::new(problem, goal, scope, scopes);
+    }
+
     /// Whether the estimate leaves nothing but the drift out of account.
     pub(super) fn is_exact(&self) -> bool {
         self.exact.as_ref().is_some_and(|(_, passes)| passes.is_whole())
@@ -190,7 +204,9 @@ impl Estimates {
         run: (u32, usize, StateId, Option<i32>),
     ) -> Cost {
         let (length, piece, state, drift) = run;
-        if self.is_never {
+        let comes_to_nothing =
+            |known: &mut Completions| !known.may_complete(automaton, (length, piece, state));
+        if self.is_never || self.completions.as_mut().is_some_and(comes_to_nothing) {
             return NEVER;
         }
         let mut rest = 0;

@@ -7,7 +7,7 @@
 use super::lengths::{lengths, stays_in_band};
 use super::nearest::{Count, Effort, Nearest, nearest};
 use super::problem::{Problem, Unsolved};
-use crate::topology::Goal;
+use crate::topology::{Goal, Wanted};
 
 /// Why a problem has no solution.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -79,12 +79,19 @@ pub fn explain(problem: &Problem<'_>, goal: Goal, longest: u32) -> Refusal {
         (None, None) => Refusal::Drift,
         (Some(of_components), Some(of_holes)) => {
             let [by_components, by_holes] = effort.solve_both(components, holes);
+            // A count that goes with the other one helps more than one that does not.
+            let mut nearest_to = |together: Goal, wanted: Wanted, count: Count| {
+                nearest(&mut effort, together, wanted, count).or_else(|| {
+                    let alone = nearest(&mut effort, others, wanted, count)?;
+                    Some(Nearest { is_alone: true, ..alone })
+                })
+            };
             if by_components == Err(Unsolved::Infeasible) {
-                let nearest = nearest(&mut effort, others, of_components, Count::Components);
+                let nearest = nearest_to(holes, of_components, Count::Components);
                 return Refusal::Components { nearest };
             }
             if by_holes == Err(Unsolved::Infeasible) {
-                return Refusal::Holes { nearest: nearest(&mut effort, others, of_holes, Count::Holes) };
+                return Refusal::Holes { nearest: nearest_to(components, of_holes, Count::Holes) };
             }
             Refusal::Both {
                 each_exists: by_components.is_ok() && by_holes.is_ok(),

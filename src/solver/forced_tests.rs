@@ -66,6 +66,31 @@ fn estimates_of_any_level_lead_to_the_optimum() {
     assert!(solved.get() >= 8_000, "{} have a run", solved.get());
 }
 
+/// Knowing which counts a run may still come to leads to the optimum, and where no run comes to what is wanted, whatever
+/// its drift, nothing is searched.
+#[test]
+fn completions_lead_to_the_optimum() {
+    let (solved, refused) = (Cell::new(0), Cell::new(0));
+    for_samples(CASES, |sample| {
+        let (problem, runs) = sample.enumerated();
+        let goals = sample.goals(&problem, &runs);
+        for goal in goals.into_iter().filter(|goal| goal.components.is_some() || goal.holes.is_some()) {
+            let force = |family: &mut Family, automaton: &mut Automaton<'_>| {
+                let scope = family.scope.clone();
+                family.estimates.learn_completions(&problem, goal, &scope, 1);
+                family.look_again(&problem, automaton);
+                refused.set(refused.get() + usize::from(family.members.is_empty()));
+            };
+            let mut automaton = Automaton::new(problem.descriptors, goal, problem.shape);
+            let from = (Level::Topology, false, NEVER_SOON);
+            let found = cheapest_from(&problem, &mut automaton, from, force);
+            solved.set(solved.get() + usize::from(check(&problem, &runs, goal, found, "completions")?));
+        }
+        Ok(())
+    });
+    assert!(solved.get() >= 500 && refused.get() >= 100, "{} have a run, {}", solved.get(), refused.get());
+}
+
 #[test]
 fn classes_lead_to_the_optimum() {
     let (solved, made) = (Cell::new(0), Cell::new(0));

@@ -12,6 +12,7 @@
 //!
 //! [`Automaton`]: crate::topology::Automaton
 
+mod beam;
 mod best;
 mod big;
 #[cfg(test)]
@@ -20,6 +21,7 @@ mod census;
 mod cheapest;
 mod classes;
 mod coarse;
+mod completions;
 mod connected;
 mod connectivity;
 mod counts;
@@ -63,7 +65,7 @@ use crate::topology::{Automaton, Goal};
 ///
 /// # Errors
 /// [`Unsolved::Infeasible`] when no sequence meets the constraints, [`Unsolved::TooLarge`] when the search passed
-/// [`Problem::memory_limit`] and found none.
+/// [`Problem::memory_limit`] or [`Problem::effort_limit`] and found none.
 pub fn solve(problem: &Problem<'_>, goal: Goal) -> Result<Solution, Unsolved> {
     solve_unless(problem, goal, &|| false)
 }

@@ -24,6 +24,8 @@ pub struct Nearest {
     pub count: u32,
     /// Whether every count nearer to the request was found to be impossible.
     pub is_proven: bool,
+    /// Whether that is so only without the other number, where two are wanted.
+    pub is_alone: bool,
 }
 
 /// The effort of all searches of a refusal together, in labels: about a third of a second.
@@ -78,7 +80,7 @@ impl<'p> Effort<'p> {
         if self.left == 0 {
             return Err(Unsolved::TooLarge { labels: 0 });
         }
-        let problem = Problem { memory_limit, ..self.problem.clone() };
+        let problem = Problem { memory_limit, effort_limit: self.left, ..self.problem.clone() };
         let (found, effort) = solve_with_effort(&problem, goal, &|| false);
         self.left = self.left.saturating_sub(effort.max(LEAST_EFFORT));
         found
@@ -317,7 +319,8 @@ pub(super) fn nearest(
         // Whatever the ornament has by itself is found at once, and more than nothing.
         effort.left = effort.left.max(1);
         let whole = effort.search(others, ample).ok().map(counted);
-        return whole.map(|count| Nearest { count, is_proven: false });
+        return whole.map(|count| Nearest { count, is_proven: false, is_alone: false });
     }
-    best(&sides).map(|count| Nearest { count, is_proven: !is_open(&sides) })
+    let is_proven = !is_open(&sides);
+    best(&sides).map(|count| Nearest { count, is_proven, is_alone: false })
 }

@@ -20,9 +20,8 @@ const LONG: usize = 16;
 const MOST_JOINS: usize = 100_000;
 /// The part of the estimate that another pass has to promise.
 const NEAR: i64 = 256;
-/// Prices that cycles are asked for, at most, and the highest.
+/// Prices that cycles are asked for, at most.
 const MOST_PRICES: usize = 32;
-const HIGHEST_OF_CYCLES: f64 = 1e9;
 /// Passes that look for a price, at most.
 const MOST_PASSES: usize = 8;
 
@@ -37,7 +36,8 @@ impl Prices {
     /// The cost of what is added to a run, with its rise and its count paid for.
     pub(super) fn with_cost(self, toll: Toll) -> i64 {
         let cost = i64::try_from(toll.cost).unwrap_or(i64::MAX / 4);
-        cost + self.rise * i64::from(toll.rise) + self.count * i64::from(toll.count)
+        let of_rise = self.rise.saturating_mul(i64::from(toll.rise));
+        cost.saturating_add(of_rise).saturating_add(self.count.saturating_mul(i64::from(toll.count)))
     }
 }
 
@@ -126,8 +126,8 @@ pub(super) fn price(
     base: Prices,
     sum: &Sum,
 ) -> Option<i64> {
-    if let Sum::Rise { most, .. } = sum
-        && let Some(price) = of_cycles(problem, graph, starts, base, *most)
+    if let &Sum::Rise { most, highest } = sum
+        && let Some(price) = of_cycles(problem, graph, starts, base, (most, highest))
     {
         return Some(price);
     }
@@ -196,7 +196,13 @@ pub(super) fn price(
 
 /// The price of the rise by the cheapest cycles; `None` when they say none, or the run is too short for them to say
 /// much.
-fn of_cycles(problem: &Problem<'_>, graph: &Graph, starts: &[Start], base: Prices, most: i64) -> Option<i64> {
+fn of_cycles(
+    problem: &Problem<'_>,
+    graph: &Graph,
+    starts: &[Start],
+    base: Prices,
+    (most, highest): (i64, i64),
+) -> Option<i64> {
     let longest = *problem.window.end();
     if (longest as usize) < LONG * graph.widest() || graph.work(1) > MOST_JOINS {
         return None;
@@ -214,7 +220,8 @@ fn of_cycles(problem: &Problem<'_>, graph: &Graph, starts: &[Start], base: Price
         false => (-1, tangent(-1, 0.0).filter(|down| down.slope > 0.0)?),
     };
     let mut high: Option<Mean> = None;
-    let mut at = (low.value / low.slope).max(1.0).floor();
+    let highest = highest as f64;
+    let mut at = (low.value / low.slope).clamp(1.0, highest).floor();
     for _ in 0..MOST_PRICES {
         let next = tangent(side, at)?;
         match next.slope > 0.0 {
@@ -227,8 +234,8 @@ fn of_cycles(problem: &Problem<'_>, graph: &Graph, starts: &[Start], base: Price
                 _ => break,
             },
             // All that goes on for ever climbs: whether anything stays in the band is for the passes to tell.
-            None if at >= HIGHEST_OF_CYCLES => return None,
-            None => at * 4.0,
+            None if at >= highest => return None,
+            None => (at * 4.0).min(highest),
         };
     }
     let best = high.filter(|high| high.value > low.value).unwrap_or(low).at as i64;

@@ -71,8 +71,8 @@ pub enum Unsolved {
     /// No sequence meets the constraints.
     #[error("no sequence of pieces meets the constraints")]
     Infeasible,
-    /// The search passed its memory limit without having found a sequence.
-    #[error("the search passed its memory limit after {labels} partial runs")]
+    /// The search passed a limit, of memory or of effort, without having found a sequence.
+    #[error("the search was given up after {labels} partial runs")]
     TooLarge {
         /// Labels made until then.
         labels: usize,

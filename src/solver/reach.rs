@@ -16,7 +16,8 @@ use crate::topology::{Automaton, Dominance, Goal, StateId, Wanted};
 /// States that are compared before the question is left open.
 const PATIENCE: usize = 4_000_000;
 
-/// Word operations of all passes together that tell whether a goal [`is_impossible`]: about a tenth of a second.
+/// Word operations of the passes over counts together that tell whether a goal [`is_impossible`]: less than a tenth of a
+/// second. Graphs are made and ranges found besides, within limits of their own for each scope.
 const SOON: usize = 100_000_000;
 /// The memory by which the other passes are kept as short.
 const SOON_BYTES: usize = 64 << 20;
