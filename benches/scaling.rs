@@ -14,7 +14,7 @@ use std::time::Instant;
 
 use instances::{Instance, Sizes};
 use openwork::exemplar::{Exemplar, Limits, ReadOptions};
-use openwork::job::{DEFAULT_MEMORY_LIMIT, PlanOptions, plan};
+use openwork::job::{DEFAULT_MEMORY_LIMIT, PlanOptions, SEED_SPREAD, plan};
 use openwork::pieces::{Catalogue, CostWeights};
 use openwork::planar::Tolerances;
 use openwork::reeb::{ReebGraph, Slicing, SlicingRule};
@@ -73,6 +73,7 @@ fn by_length(exemplar: &str, most: usize) -> Curve {
             goal: one_component(),
             weights: CostWeights::default(),
             seed: None,
+            seed_spread: SEED_SPREAD,
             variety: None,
             memory_limit: DEFAULT_MEMORY_LIMIT,
             effort: None,

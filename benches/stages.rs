@@ -15,7 +15,7 @@ use openwork::exemplar::{Exemplar, Limits, ReadOptions};
 use openwork::export;
 use openwork::fabricate::{BridgeOptions, Counts, bridge, extrude, snapped_to_f32};
 use openwork::fit::{FitOptions, Outline, Sides, StitchMethod};
-use openwork::job::{Band, BandBuilder, DEFAULT_MEMORY_LIMIT, Output, Plan, PlanOptions, plan};
+use openwork::job::{Band, BandBuilder, DEFAULT_MEMORY_LIMIT, Output, Plan, PlanOptions, SEED_SPREAD, plan};
 use openwork::pieces::{Catalogue, CostWeights};
 use openwork::planar::{Contour, FillRule, Grid, GridPoint, Region, Tolerances};
 use openwork::reeb::{ReebGraph, Slicing, SlicingRule};
@@ -85,6 +85,7 @@ fn solve(catalogue: &Catalogue, shape: Shape, length_mm: f64) -> Plan {
         goal,
         weights: CostWeights::default(),
         seed: None,
+        seed_spread: SEED_SPREAD,
         variety: None,
         memory_limit: DEFAULT_MEMORY_LIMIT,
         effort: None,

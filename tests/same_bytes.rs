@@ -43,10 +43,10 @@ fn one_thread_two_threads_and_again() {
 /// What a refusal looks for, it looks for on several threads.
 #[test]
 fn a_refusal_says_the_same_again() {
-    let room = Room::with(&["lace.svg", "vine.svg"]);
+    let room = Room::with(&["lace.svg", "lattice.svg"]);
     for job in [
-        "band lace.svg --along line:120mm --components 1 --holes 12",
-        "band vine.svg --along line:60mm --components 40 --holes 0",
+        "band lace.svg --along line:240mm --components 1 --holes 12",
+        "band lattice.svg --along line:240mm --components 1 --holes 12",
     ] {
         let said = || {
             let finished = Finished::of(&mut room.command(&format!("{job} -o out.svg")));

@@ -232,7 +232,7 @@ pub(super) struct PatternArguments {
     /// Partial sequences that the search looks at before it gives optimality up, in millions, of which one takes about a
     /// second; it then takes the best that a beam finds, and says how far from the optimum that may be [default: 4, more
     /// for long bands]
-    #[arg(long, value_name = "MILLIONS", value_parser = values::effort)]
+    #[arg(long, value_name = "MILLIONS", value_parser = values::effort, allow_hyphen_values = true)]
     pub(super) effort: Option<usize>,
     /// Join components by struts and open holes by slits of this width, as few and as short as can be, where the ornament
     /// cannot give the components or holes asked for, or only with many jumps: a bridge costs as much as half a jump

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::plan::{Plan, PlanError, PlanOptions, Prospect, finish, first_fit, problem_of, why};
+use super::plan::{Plan, PlanError, PlanOptions, Prospect, SEED_SPREAD, finish, first_fit, problem_of, why};
 use crate::pieces::Catalogue;
 use crate::solver::{self, Census, Random, Solution, Tally, Unsolved, canonical};
 use crate::topology::Shape;
@@ -47,7 +47,7 @@ pub struct Chosen {
     /// How many sequences meet the constraints within the accepted lengths, if that was asked for.
     pub sequences: Option<Tally>,
     /// Whether random sequences were drawn from all that there are with their exact probabilities. Otherwise each is
-    /// the cheapest when every jump costs a random part more.
+    /// the cheapest when every jump costs a random part more, the more the higher the temperature.
     pub is_exact: Option<bool>,
 }
 
@@ -102,7 +102,7 @@ pub(super) fn chosen(
                     let plans = drawn.into_iter().map(|sequence| to_plan(solution(sequence)));
                     plans.map(|plan| Plan { gap: None, ..plan }).collect()
                 }
-                None => perturbed(catalogue, options, seed, count)?,
+                None => perturbed(catalogue, options, (seed, count), temperature)?,
             };
             (plans, Some(is_exact))
         }
@@ -124,15 +124,19 @@ fn draw(mut census: Census<'_>, seed: u64, count: usize, shape: Shape) -> Vec<Ve
     drawn
 }
 
-/// Up to `count` different sequences, each the cheapest when every jump costs a random part more.
+/// Up to `count` different sequences, each the cheapest when every jump costs a random part more: the more, the higher the
+/// temperature, and the more sequences were found before.
 fn perturbed(
     catalogue: &Catalogue,
     options: &PlanOptions,
-    seed: u64,
-    count: usize,
+    (seed, count): (u64, usize),
+    temperature: f64,
 ) -> Result<Vec<Plan>, Unsolved> {
     /// Seeds that are tried for each sequence.
-    const TRIES: usize = 3;
+    const TRIES: usize = 8;
+    /// By how much the random part grows when it has led to a sequence that is known.
+    const GROWTH: f64 = 1.15;
+    let mut seed_spread = SEED_SPREAD * temperature / DEFAULT_TEMPERATURE;
     let mut random = Random::new(seed);
     let mut seen = BTreeSet::new();
     let mut plans = Vec::new();
@@ -140,10 +144,12 @@ fn perturbed(
         if plans.len() == count {
             break;
         }
-        let options = PlanOptions { seed: Some(random.bits()), ..*options };
+        let options = PlanOptions { seed: Some(random.bits()), seed_spread, ..*options };
         let found = first_fit(catalogue, &options, Prospect::UNKNOWN)?;
         if seen.insert(canonical(&found.sequence, options.shape)) {
             plans.push(found);
+        } else {
+            seed_spread *= GROWTH;
         }
     }
     Ok(plans)

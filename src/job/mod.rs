@@ -73,7 +73,7 @@ pub use laser::{LaserFile, LaserOptions, LaserReport};
 pub use making::{EnforcedReport, Quantities};
 pub use output::{Format, Output, Target};
 pub use picture::{PictureOptions, Show};
-pub use plan::{DEFAULT_MEMORY_LIMIT, Plan, PlanError, PlanOptions, plan};
+pub use plan::{DEFAULT_MEMORY_LIMIT, Plan, PlanError, PlanOptions, SEED_SPREAD, plan};
 pub use print::PrintOptions;
 pub use rect::Rect;
 pub use rect_builder::{RectBuilder, RectJob};

@@ -20,6 +20,9 @@ pub struct PlanOptions {
     /// A seed varies the cost of each jump, so that another seed gives another band near the optimum; without
     /// one the optimum itself is found.
     pub seed: Option<u64>,
+    /// How much the seed adds to the cost of a jump at most, in units of λ: [`SEED_SPREAD`] or another number. Beyond that,
+    /// what is more is added to natural joins as well.
+    pub seed_spread: f64,
     /// The penalty on repetition.
     pub variety: Option<Variety>,
     /// The memory that the search may take, in bytes, before it gives optimality up.
@@ -80,9 +83,9 @@ const BIN_STEP: f64 = 1.2;
 const MOST_BINS: f64 = 400_000.0;
 /// Units of drift in the height of the band.
 const DRIFT_UNITS: f64 = 64.0;
-/// How much a seed may add to the cost of a jump, as a part of λ. Less, and many seeds give the optimum again;
-/// more, and bands cost more without being more different.
-const SEED_SPREAD: f64 = 2.0;
+/// How much a seed adds to the cost of a jump when nothing else is asked for, in units of λ. Less, and many seeds give the
+/// optimum again; more, and bands cost more without being more different.
+pub const SEED_SPREAD: f64 = 2.0;
 /// The λ that this part is taken of when λ is smaller, so that a seed has an effect without λ too.
 const LEAST_SEEDED_JUMP: f64 = 0.1;
 /// The partial runs that a search looks at when nothing else is asked for, at least, and for each bin of the length. Five
@@ -239,7 +242,9 @@ fn problem<'a>(catalogue: &'a Catalogue, options: &PlanOptions, bin_mm: f64) -> 
     let too_long = 2 * length_bins as u32 + 2;
     let widths = pieces.iter().map(|p| bins(p, bin_mm).min(too_long)).collect();
     let unit_mm = options.height_mm / DRIFT_UNITS;
-    let seed_spread = SEED_SPREAD * options.weights.jump.max(LEAST_SEEDED_JUMP);
+    let unit = options.weights.jump.max(LEAST_SEEDED_JUMP);
+    let (of_jumps, of_natural) =
+        (options.seed_spread * unit, (options.seed_spread - SEED_SPREAD).max(0.0) * unit);
     let steps = catalogue
         .joins()
         .iter()
@@ -248,7 +253,7 @@ fn problem<'a>(catalogue: &'a Catalogue, options: &PlanOptions, bin_mm: f64) -> 
             joins
                 .iter()
                 .map(|join| {
-                    let spread = if join.is_natural { 0.0 } else { seed_spread };
+                    let spread = if join.is_natural { of_natural } else { of_jumps };
                     let extra = options.seed.map_or(0.0, |seed| spread * noise(seed, from, join.to));
                     let rise = (join.rise_mm / unit_mm).round() as i32;
                     Step { to: join.to, cost: micro(join.cost + extra), rise }
@@ -319,6 +324,7 @@ mod tests {
                 goal: job.options.goal,
                 weights: job.options.weights,
                 seed: None,
+                seed_spread: SEED_SPREAD,
                 variety: None,
                 memory_limit: DEFAULT_MEMORY_LIMIT,
                 effort: None,

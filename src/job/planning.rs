@@ -6,7 +6,7 @@ use super::builder::BandJob;
 use super::choice::{Choice, Chosen, chosen};
 use super::cut::Cut;
 use super::error::JobError;
-use super::plan::{Plan, PlanError, PlanOptions, Prospect, first_fit, is_impossible, why};
+use super::plan::{Plan, PlanError, PlanOptions, Prospect, SEED_SPREAD, first_fit, is_impossible, why};
 use super::refusal;
 use super::stage::{Clock, Stage};
 use crate::domain::BandMap;
@@ -22,7 +22,13 @@ pub(super) fn plan_run(
 ) -> Result<(Plan, Topology), JobError> {
     let options = plan_options(job, cut, map);
     let chosen = strictly(&options, Choice::Cheapest, false, cut, clock);
-    let mut chosen = chosen.map_err(|error| refused(error, cut, &options, ""))?;
+    // What else could be had here need not be what the rectangle could have.
+    let mut chosen = chosen.map_err(|error| match error {
+        PlanError::Refused { refusal, .. } => {
+            JobError::Refused(refusal::reason(&cut.catalogue, &options, &refusal))
+        }
+        error => refused(error, cut, &options, ""),
+    })?;
     Ok(with_topology(cut, &options, chosen.plans.swap_remove(0)))
 }
 
@@ -65,6 +71,7 @@ pub(super) fn plan_options(job: &BandJob, cut: &Cut, map: &BandMap) -> PlanOptio
         goal: job.options.goal,
         weights: job.options.weights,
         seed: job.options.seed,
+        seed_spread: SEED_SPREAD,
         variety: job.variety.map(|variety| variety.with_mirrored(cut.catalogue.originals())),
         memory_limit: job.memory_limit,
         effort: job.options.effort,

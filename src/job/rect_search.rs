@@ -295,6 +295,10 @@ impl Search<'_, '_> {
                 "no rectangle of {} was found in {ways} way(s), no strip as long as it is wide: {why}; try another --width{remedy}",
                 self.job.size
             )),
+            Some((_, JobError::SearchTooLarge { .. })) => JobError::Refused(format!(
+                "no rectangle of {} was found in {ways} way(s), and some were given up, as each may take a part of the search only; try counts nearer to the ornament's own, or another --width{remedy}",
+                self.job.size
+            )),
             Some((_, error)) => error,
             None => unreachable!("a height is tried, and it either succeeds or fails with an error"),
         }

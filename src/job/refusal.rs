@@ -6,48 +6,64 @@ use crate::topology::{Goal, Shape, Wanted};
 
 use super::plan::{EPSILONS, PlanOptions};
 
-/// The message for a refusal.
+/// The message for a refusal: which constraint, and what can be had.
 pub(super) fn message(
     catalogue: &Catalogue,
     options: &PlanOptions,
     refusal: &Refusal,
     bin_mm: f64,
 ) -> String {
+    let hint = match *refusal {
+        Refusal::Length { below, above } => lengths(options, below, above, bin_mm),
+        Refusal::Drift => {
+            "draw the ornament more level, or use --slicing uniform:T with other cuts".to_owned()
+        }
+        Refusal::ClosedPattern => {
+            "leave out --closed-pattern, or take an exemplar whose strands run from end to end".to_owned()
+        }
+        Refusal::Components { nearest } => nearest_hint("--components", nearest),
+        Refusal::Holes { nearest } => nearest_hint("--holes", nearest),
+        Refusal::Both { nearest_holes, .. } => nearest_hint("--holes", nearest_holes),
+    };
+    let separator = if matches!(refusal, Refusal::Length { .. }) { ": " } else { "; " };
+    reason(catalogue, options, refusal) + separator + &hint
+}
+
+/// Which constraint cannot be met, and why.
+pub(super) fn reason(catalogue: &Catalogue, options: &PlanOptions, refusal: &Refusal) -> String {
     let along = format!("along {:.1} mm", options.length_mm);
     let Goal { components, holes, .. } = options.goal;
     let shown = |wanted: Option<Wanted>| wanted.map_or_else(String::new, |w| w.to_string());
     match *refusal {
-        Refusal::Length { below, above } => lengths(catalogue, options, below, above, bin_mm),
-        Refusal::Drift => format!(
-            "every sequence {along} climbs or falls out of the band; draw the ornament more level, or use --slicing uniform:T with other cuts"
+        Refusal::Length { below: None, above: None } => {
+            format!("no sequence of the {} piece(s) exists at all", catalogue.pieces().len())
+        }
+        Refusal::Length { .. } => format!(
+            "no sequence of pieces is within {:.0} % of the curve's {:.1} mm",
+            EPSILONS[EPSILONS.len() - 1] * 100.0,
+            options.length_mm
         ),
-        Refusal::ClosedPattern => format!(
-            "no sequence {along} goes all the way round: {}; leave out --closed-pattern, or take an exemplar whose strands run from end to end",
-            break_witness(catalogue)
-        ),
-        Refusal::Components { nearest } => format!(
-            "no sequence {along} has {} component(s): {}; {}",
+        Refusal::Drift => format!("every sequence {along} climbs or falls out of the band"),
+        Refusal::ClosedPattern => {
+            format!("no sequence {along} goes all the way round: {}", break_witness(catalogue))
+        }
+        Refusal::Components { .. } => format!(
+            "no sequence {along} has {} component(s): {}",
             shown(components),
-            component_witness(catalogue, options),
-            nearest_hint("--components", nearest)
+            component_witness(catalogue, options)
         ),
-        Refusal::Holes { nearest } => format!(
-            "no sequence {along} has {} hole(s): {}; {}",
-            shown(holes),
-            hole_witness(catalogue, options),
-            nearest_hint("--holes", nearest)
-        ),
-        Refusal::Both { each_exists: true, nearest_holes } => format!(
-            "{} component(s) can be had {along}, and {} hole(s) can, but not both in one sequence; {}",
+        Refusal::Holes { .. } => {
+            format!("no sequence {along} has {} hole(s): {}", shown(holes), hole_witness(catalogue, options))
+        }
+        Refusal::Both { each_exists: true, .. } => format!(
+            "{} component(s) can be had {along}, and {} hole(s) can, but not both in one sequence",
             shown(components),
-            shown(holes),
-            nearest_hint("--holes", nearest_holes)
+            shown(holes)
         ),
-        Refusal::Both { each_exists: false, nearest_holes } => format!(
-            "no sequence {along} has {} component(s) and {} hole(s) together; {}",
+        Refusal::Both { each_exists: false, .. } => format!(
+            "no sequence {along} has {} component(s) and {} hole(s) together",
             shown(components),
-            shown(holes),
-            nearest_hint("--holes", nearest_holes)
+            shown(holes)
         ),
     }
 }
@@ -67,13 +83,7 @@ fn nearest_hint(option: &str, nearest: Option<Nearest>) -> String {
     }
 }
 
-fn lengths(
-    catalogue: &Catalogue,
-    options: &PlanOptions,
-    below: Option<u32>,
-    above: Option<u32>,
-    bin_mm: f64,
-) -> String {
+fn lengths(options: &PlanOptions, below: Option<u32>, above: Option<u32>, bin_mm: f64) -> String {
     let mm = |bins: u32| format!("{:.1} mm", f64::from(bins) * bin_mm);
     let can = match (below, above) {
         (None, None) => {
@@ -81,20 +91,13 @@ fn lengths(
                 Shape::Open => "no piece that the exemplar can begin with leads to one that it can end with",
                 Shape::Ring => "no piece leads back to itself through compatible cuts",
             };
-            return format!(
-                "no sequence of the {} piece(s) exists at all: {why}; try --slicing uniform:T, or an exemplar with more cuts",
-                catalogue.pieces().len()
-            );
+            return format!("{why}; try --slicing uniform:T, or an exemplar with more cuts");
         }
         (Some(a), Some(b)) => format!("the nearest lengths that can be made are {} and {}", mm(a), mm(b)),
         (Some(a), None) => format!("the nearest length that can be made is {}", mm(a)),
         (None, Some(b)) => format!("the shortest that can be made is {}", mm(b)),
     };
-    format!(
-        "no sequence of pieces is within {:.0} % of the curve's {:.1} mm: {can} at this width; change the curve's length, or scale the ornament with --width",
-        EPSILONS[EPSILONS.len() - 1] * 100.0,
-        options.length_mm
-    )
+    format!("{can} at this width; change the curve's length, or scale the ornament with --width")
 }
 
 /// Whether runs exist, of any length, without an empty join inside and without a piece that holds an island.
