@@ -65,8 +65,8 @@ cat <<INTRO
 
 Bands of every exemplar along a line of 240 mm and round a circle of 80 mm, with targets that most of them cannot meet.
 Of $(rows '[|]$') rows $(rows 'the nearest that can be had is') name the nearest count with the proof that there is none nearer,
-$(rows '; --[a-z]* [0-9]* can be had') one that can be had, $(rows 'leave out --[ch][a-z]* to see') none, $(rows 'given up') were given up, and $(rows 'not done') were ended after $limit s.
-Processor time in seconds, of the whole process: the longest refusal took $(grep -v 'not done' "$work/rows" | cut -d '|' -f 5 | sort -g | tail -n 1 | tr -d ' ').
+$(rows '; --[a-z]* [0-9]* can be had') one that can be had, $(rows 'leave out --') none, and $(rows 'given up') were given up without an answer. $(rows 'not done') runs were ended after $limit s.
+Processor time in seconds, of the whole process: the longest refusal took $(grep -vE 'not done|given up' "$work/rows" | cut -d '|' -f 5 | sort -g | tail -n 1 | tr -d ' ').
 
 Command: \`${OPTIONS:+OPTIONS="$OPTIONS" }${SECONDS_EACH:+SECONDS_EACH=$SECONDS_EACH }scripts/refusals.sh EXEMPLAR.svg... > docs/refusals.md\`. Exemplars c1 to c9 are real ornaments from
 TeX packages under the LPPL (pgfornament, pgfornament-han, niceframe), not kept in this repository; the others are in

@@ -19,7 +19,7 @@ const BEAMS: [usize; 3] = [300, 3_000, 30_000];
 /// Runs of each length that it keeps at least.
 const NARROWEST_BEAM: usize = 30;
 /// The effort of all beams, as a multiple of that of the search for the optimum.
-const BEAM_EFFORT: usize = 3;
+const BEAM_EFFORT: usize = 1;
 
 impl Cheapest<'_> {
     /// The best run that a beam finds, member by member.

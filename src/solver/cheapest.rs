@@ -36,6 +36,8 @@ const TOPOLOGY: usize = 8;
 const PRICES: usize = 8;
 /// Effort after which the dearest of all is made, the pass over all pairs of piece and state with the drift.
 const LONG: usize = 1_500_000;
+/// Runs that take as long to look at as a label, when they become none.
+const LOOKS_PER_LABEL: usize = 8;
 /// A threshold is too high when it lets in so many times the effort of the last one.
 const LEAP: usize = 24;
 /// It is lowered to so small a part of the step that led to it.
@@ -108,7 +110,9 @@ pub(super) struct Cheapest<'p> {
     learning: usize,
     /// The work of all walks, counted in labels.
     pub(super) effort: usize,
-    /// Of it, what was done before the estimates were those of the level, and runs told apart by drift or not.
+    /// Runs that all walks looked at.
+    looked: usize,
+    /// Of the effort, what was done before the estimates were those of the level, and runs told apart by drift or not.
     effort_before: usize,
     /// Of the last walks with one threshold.
     last: usize,
@@ -145,6 +149,7 @@ impl<'p> Cheapest<'p> {
             labels: 0,
             effort: 0,
             learning: 0,
+            looked: 0,
             effort_before: 0,
             last: 0,
         }
@@ -168,7 +173,7 @@ impl<'p> Cheapest<'p> {
             let round = self.round(automaton, patience.min(leap));
             if round.is_cut_short {
                 if self.effort > patience {
-                    if self.patience().is_none() || self.effort >= self.problem.effort_limit {
+                    if self.patience().is_none() || self.effort >= self.effort_limit(automaton) {
                         return self.beam(automaton);
                     }
                     self.learn(automaton);
@@ -289,11 +294,12 @@ impl<'p> Cheapest<'p> {
                     effort_limit: limit.saturating_sub(self.effort),
                 };
                 let beyond = Beyond::new(self.threshold);
-                let Passage { found, drifted_at, beyond, labels, effort, is_cut_short } =
+                let Passage { found, drifted_at, beyond, labels, effort, looked, is_cut_short } =
                     walk.run(automaton, beyond);
                 family.keep_table(at, table);
                 self.labels += labels;
                 self.effort += effort;
+                self.looked += looked;
                 round.drifted_at = round.drifted_at.min(drifted_at);
                 round.beyond.add(&beyond);
                 self.best = found.or(self.best.take());
@@ -355,7 +361,7 @@ impl<'p> Cheapest<'p> {
     /// Effort at which the search is given up, in all walks together: that of as many labels as fit the memory at most.
     fn effort_limit(&self, automaton: &Automaton<'_>) -> usize {
         let fits = self.problem.memory_limit.saturating_sub(automaton.bytes()) / LABEL_BYTES;
-        fits.min(self.problem.effort_limit)
+        fits.min(self.problem.effort_limit.saturating_sub(self.looked / LOOKS_PER_LABEL))
     }
 
     pub(super) fn finish(&mut self, automaton: &Automaton<'_>) -> Result<Solution, Unsolved> {

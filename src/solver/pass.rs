@@ -46,6 +46,8 @@ pub(super) struct Passage {
     pub(super) labels: usize,
     /// The work that was done, counted in labels.
     pub(super) effort: usize,
+    /// Runs that were looked at, most of which became no labels.
+    pub(super) looked: usize,
     /// Whether the walk was given up.
     pub(super) is_cut_short: bool,
 }
@@ -132,8 +134,15 @@ impl Walk<'_> {
         let widest = problem.widths.iter().copied().max().unwrap_or(1);
         let longest = *problem.window.end();
         let mut labels = Labels::new(widest, self.by_drift);
-        let mut passage =
-            Passage { found: None, drifted_at: NEVER, beyond, labels: 0, effort: 0, is_cut_short: false };
+        let mut passage = Passage {
+            found: None,
+            drifted_at: NEVER,
+            beyond,
+            labels: 0,
+            effort: 0,
+            looked: 0,
+            is_cut_short: false,
+        };
         let mut best: Option<(Cost, Cost, u32)> = None;
         let mut repetition = problem.variety.map(Repetition::new);
         for &(piece, cost) in &self.scope.starts {
@@ -236,6 +245,7 @@ impl Walk<'_> {
     ) {
         let Run { length, state, drift, cost, .. } = run;
         let piece = run.piece as usize;
+        passage.looked += 1;
         let plain = self.pieces.at(length, piece);
         let known_drift = self.by_drift.then_some(drift);
         let rest =
