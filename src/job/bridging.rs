@@ -70,6 +70,9 @@ impl BridgesReport {
     }
 }
 
+/// Bridges of which few ornaments have room for more.
+const MANY: usize = 150;
+
 /// Whether bridges could help where there is no plan.
 pub(super) fn can_help(error: &PlanError) -> bool {
     match error {
@@ -99,7 +102,11 @@ pub(super) fn hint(goal: Goal, best: Topology) -> String {
     if bridges.is_empty() {
         return String::new();
     }
-    format!("; or give --bridge with a width, as --bridge 1mm: {} would make it so", bridges.join(" and "))
+    let little = if struts + slits > MANY { ", after which little of the ornament may be left" } else { "" };
+    format!(
+        "; or give --bridge with a width, as --bridge 1mm: {} would be needed{little}",
+        bridges.join(" and ")
+    )
 }
 
 /// The options of bridges in a band. `inside_mm` is a point on the inner side of a ring, which must stay closed.
