@@ -31,6 +31,16 @@ fn drawn_bands_are_different_valid_and_the_same_for_the_same_seed() {
     assert!((1..=4).any(|n| room.read(&format!("a-0{n}.svg")) != room.read(&format!("c-0{n}.svg"))));
 }
 
+/// Where the exemplar repeats a motif, another piece of the same look makes no other band.
+#[test]
+fn no_two_of_the_best_look_the_same() {
+    let room = Room::with(&["filigree.svg"]);
+    room.succeeds("band filigree.svg --along line:120mm --width 14mm --components 1 --best 5 -o k.svg");
+    let files: std::collections::BTreeSet<Vec<u8>> =
+        (1..=5).map(|rank| room.read(&format!("k-{rank:02}.svg"))).collect();
+    assert_eq!(files.len(), 5);
+}
+
 #[test]
 fn the_k_best_are_in_order_and_begin_with_the_optimum() {
     let room = Room::with(&["vine.svg"]);

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use super::plan::{Plan, PlanError, PlanOptions, Prospect, SEED_SPREAD, finish, first_fit, problem_of, why};
-use crate::pieces::Catalogue;
-use crate::solver::{self, Census, Random, Solution, Tally, Unsolved, canonical};
+use crate::pieces::{Catalogue, Piece};
+use crate::solver::{self, Census, Problem, Random, Solution, Tally, Unsolved, canonical};
 use crate::topology::Shape;
 
 /// Which sequences are taken.
@@ -82,16 +82,13 @@ pub(super) fn chosen(
     let to_plan = |solution: Solution| finish(catalogue, options, solution, epsilon);
     let (plans, is_exact) = match choice {
         Choice::Cheapest => (vec![cheapest], None),
-        Choice::Best(k) => {
-            let list = solver::best(&problem, options.goal, k)?;
-            (list.into_iter().map(to_plan).collect(), None)
-        }
+        Choice::Best(k) => (best(catalogue, &problem, options, k)?.into_iter().map(to_plan).collect(), None),
         Choice::Drawn { seed, count, temperature } => {
             let census = Census::new(&problem, options.goal, temperature, DRAWING_EFFORT);
             let is_exact = census.is_some();
             let plans = match census {
                 Some(census) => {
-                    let drawn = draw(census, seed, count, options.shape);
+                    let drawn = draw(census, seed, count, Seen::new(catalogue, options.shape));
                     let solution = |sequence: Vec<usize>| Solution {
                         cost: problem.cost_of(&sequence).unwrap_or_default(),
                         sequence,
@@ -110,14 +107,66 @@ pub(super) fn chosen(
     Ok(Chosen { plans, sequences, is_exact })
 }
 
+/// Sequences that were met, by what they look like.
+struct Seen {
+    shape: Shape,
+    /// For each piece the first that looks like it.
+    looks: Vec<usize>,
+    sequences: BTreeSet<Vec<usize>>,
+}
+
+impl Seen {
+    /// None yet.
+    fn new(catalogue: &Catalogue, shape: Shape) -> Self {
+        /// Pieces that differ by less make the same files.
+        const ALIKE_MM: f64 = 1e-3;
+        let pieces = catalogue.pieces();
+        let first_like = |piece: &Piece| pieces.iter().position(|other| other.looks_like(piece, ALIKE_MM));
+        let looks = pieces.iter().map(|piece| first_like(piece).expect("a piece is like itself")).collect();
+        Self { shape, looks, sequences: BTreeSet::new() }
+    }
+
+    /// Whether nothing that looks the same was met before.
+    fn is_new(&mut self, sequence: &[usize]) -> bool {
+        let looks: Vec<usize> = sequence.iter().map(|&piece| self.looks[piece]).collect();
+        self.sequences.insert(canonical(&looks, self.shape))
+    }
+}
+
+/// The `k` cheapest sequences that look different.
+fn best(
+    catalogue: &Catalogue,
+    problem: &Problem<'_>,
+    options: &PlanOptions,
+    k: usize,
+) -> Result<Vec<Solution>, Unsolved> {
+    /// Sequences that are listed for each that is wanted, at most.
+    const MOST_LISTED: usize = 16;
+    let mut listed = k;
+    loop {
+        let found = solver::best(problem, options.goal, listed);
+        let (found, is_last) = match found {
+            Err(Unsolved::TooLarge { .. }) if listed > k => (solver::best(problem, options.goal, k)?, true),
+            found => (found?, listed >= MOST_LISTED * k),
+        };
+        let is_all = found.len() < listed;
+        let mut seen = Seen::new(catalogue, options.shape);
+        let different: Vec<Solution> =
+            found.into_iter().filter(|solution| seen.is_new(&solution.sequence)).take(k).collect();
+        if different.len() == k || is_all || is_last {
+            return Ok(different);
+        }
+        listed *= 2;
+    }
+}
+
 /// Up to `count` different sequences.
-fn draw(mut census: Census<'_>, seed: u64, count: usize, shape: Shape) -> Vec<Vec<usize>> {
+fn draw(mut census: Census<'_>, seed: u64, count: usize, mut seen: Seen) -> Vec<Vec<usize>> {
     let mut random = Random::new(seed);
-    let mut seen = BTreeSet::new();
     let mut drawn = Vec::new();
     for _ in 0..count.saturating_mul(REDRAWS) {
         let Some(sequence) = census.draw(&mut random).filter(|_| drawn.len() < count) else { break };
-        if seen.insert(canonical(&sequence, shape)) {
+        if seen.is_new(&sequence) {
             drawn.push(sequence);
         }
     }
@@ -138,7 +187,7 @@ fn perturbed(
     const GROWTH: f64 = 1.15;
     let mut seed_spread = SEED_SPREAD * temperature / DEFAULT_TEMPERATURE;
     let mut random = Random::new(seed);
-    let mut seen = BTreeSet::new();
+    let mut seen = Seen::new(catalogue, options.shape);
     let mut plans = Vec::new();
     for _ in 0..count.saturating_mul(TRIES) {
         if plans.len() == count {
@@ -146,7 +195,7 @@ fn perturbed(
         }
         let options = PlanOptions { seed: Some(random.bits()), seed_spread, ..*options };
         let found = first_fit(catalogue, &options, Prospect::UNKNOWN)?;
-        if seen.insert(canonical(&found.sequence, options.shape)) {
+        if seen.is_new(&found.sequence) {
             plans.push(found);
         } else {
             seed_spread *= GROWTH;

@@ -81,6 +81,22 @@ impl Piece {
         self.right.len() / 2
     }
 
+    /// Whether its ink is that of `other` to within a tolerance, vertex by vertex: where an exemplar repeats a motif, it
+    /// has such pieces.
+    pub fn looks_like(&self, other: &Self, tolerance_mm: f64) -> bool {
+        let is_near = |a: &DVec2, b: &DVec2| a.distance(*b) <= tolerance_mm;
+        let are_near =
+            |a: &[DVec2], b: &[DVec2]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| is_near(a, b));
+        let are_alike =
+            |a: &Chain, b: &Chain| (a.start, a.end) == (b.start, b.end) && are_near(&a.points, &b.points);
+        (self.width_mm - other.width_mm).abs() <= tolerance_mm
+            && self.descriptor == other.descriptor
+            && self.chains.len() == other.chains.len()
+            && self.chains.iter().zip(&other.chains).all(|(a, b)| are_alike(a, b))
+            && self.loops.len() == other.loops.len()
+            && self.loops.iter().zip(&other.loops).all(|(a, b)| are_near(a, b))
+    }
+
     /// How far its ink is from its left and its right side, in millimetres; 0 on a side with portals, and on
     /// both without ink.
     pub fn blanks_mm(&self) -> (f64, f64) {
