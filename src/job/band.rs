@@ -372,6 +372,17 @@ impl Band {
             };
             pending.push(item);
         }
+        let options = &self.job.options;
+        report.made.quantities = Some(match cutting.as_ref().and_then(Cutting::sign) {
+            Some(sign) => Quantities::new(sign, options.thickness_mm, None, options.material.as_ref()),
+            None => {
+                let is_upright = options.print.profile(options.thickness_mm)?.is_upright();
+                let make = |notes: &mut Vec<String>| self.solid(notes);
+                let volume_mm3 = clock.time(Stage::Stl, || meshes.volume_mm3(is_upright, make))?;
+                let (region, material) = (&self.part.region, options.material.as_ref());
+                Quantities::new(region, options.thickness_mm, volume_mm3, material)
+            }
+        });
         report.made.notes.append(&mut meshes.notes);
         if let Some(narrowest) = found.min_feature.filter(|n| n.width_mm < HAIRLINE_MM) {
             report.made.notes.push(format!(
@@ -389,9 +400,6 @@ impl Band {
         report.holes = found.holes;
         report.made.min_feature = found.min_feature;
         report.made.min_gap = found.min_gap;
-        let options = &self.job.options;
-        report.made.quantities =
-            Some(Quantities::new(&self.part.region, options.thickness_mm, options.material.as_ref()));
         report.made.files = outputs.iter().map(|o| name(o.target()).display().to_string()).collect();
         report.made.times.extend(clock.times);
         Ok((report, pending))

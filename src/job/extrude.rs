@@ -220,6 +220,14 @@ pub fn extrude(
         };
         pending.push(item);
     }
+    let quantities = match cutting.as_ref().and_then(Cutting::sign) {
+        Some(sign) => Quantities::new(sign, thickness_mm, None, material.as_ref()),
+        None => {
+            let is_upright = print.profile(thickness_mm)?.is_upright();
+            let volume_mm3 = clock.time(Stage::Stl, || meshes.volume_mm3(is_upright, raise))?;
+            Quantities::new(&region, thickness_mm, volume_mm3, material.as_ref())
+        }
+    };
     let narrowest_mm = narrow_places.ink.first().map(|n| n.width_mm);
     notes.append(&mut meshes.notes);
     notes.extend(small::warnings(&region, tolerances, outputs, narrowest_mm));
@@ -233,7 +241,7 @@ pub fn extrude(
         bridges,
         enforced,
         narrow_places,
-        quantities: Quantities::new(&region, thickness_mm, material.as_ref()),
+        quantities,
         bytes: sizes,
         solid,
         drawing: drawn,

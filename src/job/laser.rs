@@ -155,6 +155,8 @@ pub(super) struct Cutting {
     /// What is kept, and what of it falls out.
     kept: Region,
     fallen: Option<Region>,
+    /// The plate without what falls out, when the part was carved out of it.
+    sign: Option<Region>,
     engraved: Option<Region>,
     /// How far the part was moved on its plate.
     shift: DVec2,
@@ -173,13 +175,13 @@ impl Cutting {
     ) -> Result<Self, JobError> {
         let [chord_mm, curve_chord_mm] = chords_mm;
         let edge_mm = EDGE_MM.max(EDGE_KERFS * options.kerf_mm.unwrap_or(0.0));
-        let (kept, fallen, falls_out) = match options.sheet {
+        let (kept, fallen, sign, falls_out) = match options.sheet {
             Some(sheet) if options.carve => {
                 let carved = fabricate::carved(part, sheet, edge_mm)?;
-                (carved.plate, Some(carved.fallen), Some(carved.falls_out))
+                (carved.plate, Some(carved.fallen), Some(carved.sign), Some(carved.falls_out))
             }
-            Some(sheet) => (fabricate::on_sheet(part, sheet, edge_mm)?, None, None),
-            None => (part.clone(), None, None),
+            Some(sheet) => (fabricate::on_sheet(part, sheet, edge_mm)?, None, None, None),
+            None => (part.clone(), None, None, None),
         };
         let cut = match options.kerf_mm {
             Some(kerf_mm) => fabricate::compensated(&kept, kerf_mm, curve_chord_mm)?,
@@ -224,7 +226,24 @@ impl Cutting {
             files: Vec::new(),
         };
         let options = options.clone();
-        Ok(Self { options, lines, page_mm, chord_mm, description, kept, fallen, engraved, shift, report })
+        Ok(Self {
+            options,
+            lines,
+            page_mm,
+            chord_mm,
+            description,
+            kept,
+            fallen,
+            sign,
+            engraved,
+            shift,
+            report,
+        })
+    }
+
+    /// The sign that is left of the plate without what falls out; `None` when the part itself is kept.
+    pub(super) fn sign(&self) -> Option<&Region> {
+        self.sign.as_ref()
     }
 
     /// What is engraved, on the part's own page.

@@ -97,12 +97,14 @@ pub(super) fn worst_places(region: &Region, tolerances: &Tolerances) -> NarrowPl
     verify::narrow_places(region, NarrowPlaces::WORST, f64::INFINITY, 0.25 * tolerances.chord_mm())
 }
 
-/// The numbers of a part that cost money. Lengths are millimetres.
+/// The numbers of what is kept that cost money: of the part, or of the sign that is left of its plate, without what falls
+/// out. Lengths are millimetres.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Quantities {
-    /// Ink of the part in square millimetres.
+    /// Its area in square millimetres.
     pub area_mm2: f64,
-    /// Its volume in cubic millimetres when it is as thick as was asked for.
+    /// Its volume in cubic millimetres: that of the solid when one was made or its walls are not upright, else the area times
+    /// the thickness.
     pub volume_mm3: f64,
     /// Width, height and thickness of the box around it.
     pub box_mm: [f64; 3],
@@ -114,12 +116,18 @@ pub struct Quantities {
 }
 
 impl Quantities {
-    pub(super) fn new(region: &Region, thickness_mm: f64, material: Option<&Material>) -> Self {
+    /// Those of `region`. `volume_mm3` is that of the solid; without one the walls are upright.
+    pub(super) fn new(
+        region: &Region,
+        thickness_mm: f64,
+        volume_mm3: Option<f64>,
+        material: Option<&Material>,
+    ) -> Self {
         let (low, high) = region.bounds_mm().unwrap_or((DVec2::ZERO, DVec2::ZERO));
         let grid = region.grid();
         let edges = region.contours().flat_map(|contour| contour.edges());
         let area_mm2 = region.area_mm2();
-        let volume_mm3 = area_mm2 * thickness_mm;
+        let volume_mm3 = volume_mm3.unwrap_or(area_mm2 * thickness_mm);
         Self {
             area_mm2,
             volume_mm3,
@@ -141,10 +149,11 @@ mod tests {
         let step = Grid::for_extent(100.0).unwrap().steps(1.0);
         let plate = planar::boxes(step, FillRule::NonZero, &[(0, 0, 20, 10)]);
         let brass = fabricate::Workshop::default().material("brass").unwrap().clone();
-        let cost = Quantities::new(&plate, 2.0, Some(&brass));
+        let cost = Quantities::new(&plate, 2.0, None, Some(&brass));
         assert_eq!((cost.area_mm2, cost.volume_mm3, cost.outline_mm), (200.0, 400.0, 60.0));
         assert_eq!(cost.box_mm, [20.0, 10.0, 2.0]);
         assert!((cost.material.unwrap().mass_g - 3.4).abs() < 1e-12);
-        assert_eq!(Quantities::new(&plate, 2.0, None).material, None);
+        let bevelled = Quantities::new(&plate, 2.0, Some(390.0), None);
+        assert_eq!((bevelled.volume_mm3, bevelled.material), (390.0, None));
     }
 }
