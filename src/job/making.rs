@@ -5,14 +5,16 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::error::JobError;
-use crate::fabricate::{self, Change, Counts, EnforceOptions, Material, MaterialReport};
+use crate::fabricate::{
+    self, Change, Counts, EnforceError, EnforceOptions, Material, MaterialReport, SheetSize,
+};
 use crate::planar::{Region, Tolerances};
-use crate::verify::{self, NarrowPlaces};
+use crate::verify::{self, Mismatch, NarrowPlaces};
 
 /// So many of the greatest changes are reported.
 const CHANGES: usize = 10;
 
-/// What was thickened and widened. Areas are square millimetres.
+/// What was thickened and widened. Areas are square millimetres; of a sign that is carved out of a plate, they are the plate's.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct EnforcedReport {
     /// The ink that was added.
@@ -69,6 +71,81 @@ pub(super) fn enforced(
     };
     debug_assert_eq!(Counts::of(&enforced.region), Counts::of(region));
     Ok(Some((enforced.region, report)))
+}
+
+/// The same for a pattern that is carved out of `sheet`, told of the plate: what is added to the pattern is taken away from it.
+///
+/// # Errors
+/// As [`enforced`].
+pub(super) fn enforced_in_plate(
+    pattern: &Region,
+    tolerances: &Tolerances,
+    border: Border,
+    sheet: SheetSize,
+) -> Result<Option<(Region, EnforcedReport)>, JobError> {
+    let by = fabricate::shift_onto(pattern, sheet);
+    let made = enforced(pattern, tolerances, border).map_err(|error| match error {
+        JobError::Enforce(error) => JobError::Enforce(of_plate(error, by)),
+        error => error,
+    })?;
+    Ok(made.map(|(region, mut report)| {
+        std::mem::swap(&mut report.added_mm2, &mut report.removed_mm2);
+        std::mem::swap(&mut report.before.ink, &mut report.before.gaps);
+        report.area_before_mm2 = sheet.width_mm * sheet.height_mm - report.area_before_mm2;
+        for change in &mut report.greatest {
+            change.area_mm2 = -change.area_mm2;
+            change.position_mm = (DVec2::from(change.position_mm) + by).to_array();
+        }
+        report.before.ink.iter_mut().chain(&mut report.before.gaps).for_each(|place| place.position_mm += by);
+        (region, report)
+    }))
+}
+
+/// What cannot be enforced in a pattern, as it is seen in the plate around it.
+fn of_plate(error: EnforceError, by: DVec2) -> EnforceError {
+    match error {
+        EnforceError::Crowded { what, position_mm, width_mm, min_feature_mm, min_gap_mm } => {
+            EnforceError::Crowded {
+                what: if what == "ink" { "gap" } else { "ink" },
+                position_mm: position_mm + by,
+                width_mm,
+                min_feature_mm: min_gap_mm,
+                min_gap_mm: min_feature_mm,
+            }
+        }
+        EnforceError::Width { .. } => error,
+    }
+}
+
+/// Whether `region` keeps its counts at the widths of `tolerances`, tried as finely as a written file is judged.
+///
+/// # Errors
+/// The first [`Mismatch`], with the narrowest place.
+pub(super) fn check_widths(region: &Region, tolerances: &Tolerances) -> Result<(), Mismatch> {
+    check_widths_less(region, tolerances, 0.0)
+}
+
+/// The same with widths less by so many millimetres.
+///
+/// # Errors
+/// As [`check_widths`].
+pub(super) fn check_widths_less(
+    region: &Region,
+    tolerances: &Tolerances,
+    less_mm: f64,
+) -> Result<(), Mismatch> {
+    let [feature_mm, gap_mm] =
+        [tolerances.min_feature_mm(), tolerances.min_gap_mm()].map(|mm| (mm - less_mm).max(0.0));
+    let chord_mm = 0.25 * tolerances.chord_mm();
+    if feature_mm > 0.0 && !verify::endures_erosion(region, 0.5 * feature_mm, chord_mm) {
+        let narrowest = verify::min_feature(region, feature_mm, chord_mm);
+        return Err(Mismatch::Feature { wanted_mm: feature_mm, narrowest });
+    }
+    if gap_mm > 0.0 && !verify::endures_dilation(region, 0.5 * gap_mm, chord_mm) {
+        let narrowest = verify::min_gap(region, gap_mm, chord_mm);
+        return Err(Mismatch::Gap { wanted_mm: gap_mm, narrowest });
+    }
+    Ok(())
 }
 
 /// That there is nothing to enforce.
