@@ -98,6 +98,7 @@ impl LaserOptions {
             return refuse("--carve", &found, "write a .dxf, a .png, or an .svg with --cut");
         }
         let given = [
+            ("--cut", self.cut),
             ("--kerf", self.kerf_mm.is_some()),
             ("--sheet", self.sheet.is_some()),
             ("--engrave", self.engrave.is_some()),
