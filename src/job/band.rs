@@ -13,7 +13,7 @@ use super::describe::describe;
 use super::error::JobError;
 use super::extrude::{file_name, name};
 use super::laser::Cutting;
-use super::making::{self, Border, Quantities};
+use super::making::{self, Border, Mended, Quantities};
 use super::output::{Format, Output, Pending, Target, persist};
 use super::part::{Part, PartError};
 use super::picture::Pictured;
@@ -239,8 +239,14 @@ impl Band {
             Some(sheet) => making::enforced_in_plate(region, tolerances, border, sheet),
             None => making::enforced(region, tolerances, border),
         })?;
-        let Some((region, enforced)) = made else { return Ok(()) };
+        let Some(Mended { region, report: enforced, pressed }) = made else { return Ok(()) };
         self.part.region = fabricate::snapped_to_f32(&region)?;
+        if let Some(pressed) = pressed {
+            self.part.seams_mm.iter_mut().flatten().for_each(|p| *p = pressed.moved(*p));
+            if let Some(bridges) = &mut self.report.bridges {
+                bridges.press(&pressed);
+            }
+        }
         let made = &mut self.report.made;
         made.notes.push(enforced.note());
         (made.area_mm2, made.vertices) = (self.part.region.area_mm2(), self.part.region.vertices());

@@ -152,13 +152,13 @@ pub fn extrude(
     notes.extend(bridges.as_ref().map(|report| report.note(Counts::of(&region))));
     let mut enforced = None;
     if enforce
-        && let Some((mended, report)) = clock.time(Stage::Enforce, || match laser.plate() {
+        && let Some(mended) = clock.time(Stage::Enforce, || match laser.plate() {
             Some(sheet) => making::enforced_in_plate(&region, &of_pattern, Border::Straight, sheet),
             None => making::enforced(&region, tolerances, Border::Straight),
         })?
     {
-        notes.push(report.note());
-        (region, enforced) = (mended, Some(report));
+        notes.push(mended.report.note());
+        (region, enforced) = (mended.region, Some(mended.report));
     }
     let expected = Expected {
         components: Some(region.components().into()),

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::error::JobError;
 use crate::fabricate::{
-    self, Change, Counts, EnforceError, EnforceOptions, Material, MaterialReport, SheetSize,
+    self, Change, Counts, EnforceError, EnforceOptions, Material, MaterialReport, Pressed, SheetSize,
 };
 use crate::planar::{Region, Tolerances};
 use crate::verify::{self, Mismatch, NarrowPlaces};
@@ -27,8 +27,18 @@ pub struct EnforcedReport {
     pub places: usize,
     /// The greatest changes.
     pub greatest: Vec<Change>,
+    /// By how much the drawing was first pressed together in width and height, so that it keeps its box.
+    pub pressed_mm: [f64; 2],
     /// The narrowest ink and gaps before.
     pub before: NarrowPlaces,
+}
+
+/// A region in which nothing is lacking any more.
+pub(super) struct Mended {
+    pub(super) region: Region,
+    pub(super) report: EnforcedReport,
+    /// How the drawing was pressed together before.
+    pub(super) pressed: Option<Pressed>,
 }
 
 /// What becomes of ink along the box around a part.
@@ -48,7 +58,7 @@ pub(super) fn enforced(
     region: &Region,
     tolerances: &Tolerances,
     border: Border,
-) -> Result<Option<(Region, EnforcedReport)>, JobError> {
+) -> Result<Option<Mended>, JobError> {
     let options = EnforceOptions {
         min_feature_mm: tolerances.min_feature_mm(),
         min_gap_mm: tolerances.min_gap_mm(),
@@ -61,7 +71,9 @@ pub(super) fn enforced(
     if enforced.region == *region {
         return Ok(None);
     }
+    let pressed = enforced.pressed;
     let report = EnforcedReport {
+        pressed_mm: pressed.map_or(DVec2::ZERO, |pressed| pressed.by_mm()).to_array(),
         added_mm2: enforced.added_mm2,
         removed_mm2: enforced.removed_mm2,
         area_before_mm2: region.area_mm2(),
@@ -70,7 +82,7 @@ pub(super) fn enforced(
         before: worst_places(region, tolerances),
     };
     debug_assert_eq!(Counts::of(&enforced.region), Counts::of(region));
-    Ok(Some((enforced.region, report)))
+    Ok(Some(Mended { region: enforced.region, report, pressed }))
 }
 
 /// The same for a pattern that is carved out of `sheet`, told of the plate: what is added to the pattern is taken away from it.
@@ -82,13 +94,14 @@ pub(super) fn enforced_in_plate(
     tolerances: &Tolerances,
     border: Border,
     sheet: SheetSize,
-) -> Result<Option<(Region, EnforcedReport)>, JobError> {
+) -> Result<Option<Mended>, JobError> {
     let by = fabricate::shift_onto(pattern, sheet);
     let made = enforced(pattern, tolerances, border).map_err(|error| match error {
         JobError::Enforce(error) => JobError::Enforce(of_plate(error, by)),
         error => error,
     })?;
-    Ok(made.map(|(region, mut report)| {
+    Ok(made.map(|mut made| {
+        let report = &mut made.report;
         std::mem::swap(&mut report.added_mm2, &mut report.removed_mm2);
         std::mem::swap(&mut report.before.ink, &mut report.before.gaps);
         report.area_before_mm2 = sheet.width_mm * sheet.height_mm - report.area_before_mm2;
@@ -97,7 +110,7 @@ pub(super) fn enforced_in_plate(
             change.position_mm = (DVec2::from(change.position_mm) + by).to_array();
         }
         report.before.ink.iter_mut().chain(&mut report.before.gaps).for_each(|place| place.position_mm += by);
-        (region, report)
+        made
     }))
 }
 
@@ -160,9 +173,15 @@ pub(super) fn no_width() -> JobError {
 impl EnforcedReport {
     /// A line about it.
     pub(super) fn note(&self) -> String {
+        let pressed = match self.pressed_mm {
+            [0.0, 0.0] => String::new(),
+            [x, y] => format!(
+                "; the drawing was pressed together by {x:.3} x {y:.3} mm before, so that it keeps its size"
+            ),
+        };
         let percent = 100.0 * (self.added_mm2 - self.removed_mm2) / self.area_before_mm2;
         format!(
-            "enforced the minimum feature and gap in {} place(s): {:.2} mm2 of ink added, {:.2} mm2 taken away ({percent:+.1} % of the area)",
+            "enforced the minimum feature and gap in {} place(s): {:.2} mm2 of ink added, {:.2} mm2 taken away ({percent:+.1} % of the area){pressed}",
             self.places, self.added_mm2, self.removed_mm2
         )
     }
