@@ -117,6 +117,7 @@ fn what_the_beam_would_spoil_is_refused() {
     refuses("--kerf 0mm -o out.dxf", 2, &["--kerf", "the kerf is 0 mm", "from 0.001"]);
     refuses("--kerf -1mm -o out.dxf", 2, &["--kerf"]);
     refuses("--kerf 0.1mm -o out.stl", 2, &["--kerf", "no output has cut lines", ".dxf"]);
+    refuses("--cut -o out.stl", 2, &["--cut", "no output has cut lines", ".dxf"]);
     refuses("--carve -o out.dxf", 2, &["--carve", "--sheet 300x200mm"]);
     refuses("--sheet 60x40mm --carve -o out.stl", 2, &["--carve", "out.stl", ".dxf"]);
     refuses("--sheet 41x40mm -o out.dxf", 2, &["--sheet", "40.00 x 20.00 mm", "at least 42.0 x 22.0 mm"]);
@@ -181,4 +182,90 @@ fn bays_that_the_beam_does_not_get_into_are_told() {
     );
     let said = room.succeeds("extrude slit.svg --kerf 0.08mm -o slit.dxf");
     assert!(!said.stderr.contains("bay"), "{}", said.stderr);
+}
+
+#[test]
+fn a_sign_weighs_what_is_left_of_its_plate() {
+    let room = Room::with(&[]);
+    room.draw("frame.svg", FRAME);
+    let made = room.succeeds(
+        "extrude frame.svg --thickness 3mm --sheet 60x40mm --carve --material birch-ply -o sign.dxf --json",
+    );
+    let report: Value = serde_json::from_slice(&made.stdout).unwrap();
+    let quantities = &report["quantities"];
+    // The whole plate less the outline of the frame: what the frame goes round falls out.
+    let area = 60.0 * 40.0 - 40.0 * 20.0;
+    assert!((number(quantities, "area_mm2") - area).abs() < 1e-3, "{quantities}");
+    let mass = 3.0 * area * number(quantities, "density_g_cm3") / 1000.0;
+    assert!((number(quantities, "mass_g") - mass).abs() < 1e-5, "{quantities}");
+    assert_eq!(quantities["box_mm"], serde_json::json!([60.0, 40.0, 3.0]));
+}
+
+/// Two slots 3 mm wide with a web of 0.6 mm between them.
+const SLOTS: &str = "<path d='M10 10H30V13H10Z M10 13.6H30V16.6H10Z'/>";
+
+#[test]
+fn widths_of_a_sign_are_those_of_its_plate() {
+    let room = Room::with(&["vine.svg"]);
+    room.draw("slots.svg", SLOTS);
+    let sign = "extrude slots.svg --sheet 60x40mm --carve";
+    let narrow = format!("{sign} --min-feature 1mm -o sign.dxf");
+    room.refuses(&narrow, 4, &["ink narrower than 1 mm", "0.600 mm at (", "20.000) mm", "--enforce"]);
+    // The slots are wide enough to be ink, and the web to be a gap.
+    room.succeeds(&format!("{sign} --min-feature 0.5mm --min-gap 2.9mm -o sign.dxf"));
+    room.succeeds("verify sign.dxf --components 1 --holes 2 --min-feature 0.5mm --min-gap 2.9mm");
+    assert_eq!(room.run("verify sign.dxf --min-feature 1mm").code, 4);
+    room.refuses(&format!("{sign} --min-gap 3.2mm -o wide.dxf"), 4, &["a gap narrower than 3.2 mm"]);
+    // What is left around the pattern is a web, too.
+    let edge = "extrude slots.svg --sheet 24x30mm --carve --min-feature 0.5mm";
+    room.succeeds(&format!("{edge} -o edge.dxf"));
+    let wide = edge.replace("0.5mm", "3mm");
+    room.refuses(&format!("{wide} --enforce -o out.dxf"), 2, &["--sheet", "needs 3 mm of the sheet"]);
+    for kerf in ["", "--kerf 0.2mm --cut -o mended.svg"] {
+        let made = room.succeeds(&format!("{narrow} --enforce {kerf} -o mended.png --show thin --json"));
+        let report: Value = serde_json::from_slice(&made.stdout).unwrap();
+        assert!(number(&report["narrow_places"]["ink"][0], "width_mm") > 1.0 - 1e-3, "{report}");
+        let enforced = &report["enforced"];
+        assert!(number(enforced, "added_mm2") > 0.0, "{enforced}");
+        let after = number(enforced, "area_before_mm2") + number(enforced, "added_mm2")
+            - number(enforced, "removed_mm2");
+        assert!((number(&report["quantities"], "area_mm2") - after).abs() < 1e-3, "{enforced}");
+        if kerf.is_empty() {
+            room.succeeds("verify sign.dxf --components 1 --holes 2 --min-feature 1mm");
+        }
+    }
+    let band = "band vine.svg --along line:120mm --width 30mm --components 1 --sheet 140x50mm --carve";
+    room.refuses(
+        &format!("{band} --min-feature 3mm -o band.dxf"),
+        4,
+        &["band.dxf", "ink narrower than 3 mm"],
+    );
+    room.succeeds(&format!("{band} --min-feature 0.2mm --min-gap 0.2mm -o band.dxf --report band.json"));
+    let report = room.json("band.json");
+    let [web, slot] = ["min_feature", "min_gap"].map(|side| number(&report[side], "width_mm"));
+    room.succeeds(&format!(
+        "verify band.dxf --min-feature {:.3}mm --min-gap {:.3}mm",
+        web - 0.02,
+        slot - 0.02
+    ));
+}
+
+#[test]
+fn the_picture_of_a_sign_is_as_asked_for() {
+    let room = Room::with(&[]);
+    room.draw("slots.svg", SLOTS);
+    let sign = "extrude slots.svg --sheet 60x40mm --carve -o sign.png";
+    let size = |options: &str| {
+        room.succeeds(&format!("{sign} {options}"));
+        let bytes = room.read("sign.png");
+        (u32::from_be_bytes(bytes[16..20].try_into().unwrap()), bytes)
+    };
+    let (wide, plain) = size("--pixels 700");
+    let (_, marked) = size("--pixels 700 --show thin");
+    assert!(wide == 700 && plain != marked);
+    let refuses = |options: &str, words: &[&str]| room.refuses(&format!("{sign} {options}"), 2, words);
+    refuses("--view iso", &["--view", "--carve", "leave it out"]);
+    refuses("--show bridges", &["--show", "cuts away", "--show thin"]);
+    refuses("--show seams", &["--show", "seams"]);
+    room.refuses("extrude slots.svg -o out.png --show seams", 2, &["--show", "seams", "thin or bridges"]);
 }

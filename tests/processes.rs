@@ -69,3 +69,30 @@ fn what_cannot_be_is_told() {
     let tile = "rect vine.svg --size 30x30mm --tile --process fdm-0.4 --enforce -o out.svg";
     room.refuses(tile, 2, &["--tile", "would not match", "openwork extrude EXEMPLAR.svg"]);
 }
+
+#[test]
+fn walls_that_are_not_upright_weigh_less() {
+    let room = Room::with(&["vine.svg"]);
+    room.draw("plates.svg", "<path d='M10 10h30v20h-30z M50 10h20v20h-20z'/>");
+    let extrude = "extrude plates.svg --thickness 4mm --material pla";
+    for walls in ["--chamfer 0.5mm", "--taper 5", "--chamfer 0.4mm --taper 3", ""] {
+        let said = room.succeeds(&format!("{extrude} {walls} -o plates.stl --json"));
+        let report: serde_json::Value = serde_json::from_slice(&said.stdout).unwrap();
+        let quantities = &report["quantities"];
+        let number = |name: &str| quantities[name].as_f64().unwrap();
+        let volume = report["solid"]["volume_mm3"].as_f64().unwrap();
+        assert_eq!(number("volume_mm3"), volume, "{walls}");
+        assert!((number("mass_g") - volume * number("density_g_cm3") / 1000.0).abs() < 1e-9, "{walls}");
+        assert_eq!(volume < 4.0 * number("area_mm2") - 5.0, !walls.is_empty(), "{walls}: {volume}");
+        // The same without a solid among the files.
+        let said = room.succeeds(&format!("{extrude} {walls} -o plates.svg.svg --json"));
+        let report: serde_json::Value = serde_json::from_slice(&said.stdout).unwrap();
+        let drawn = report["quantities"]["volume_mm3"].as_f64().unwrap();
+        assert!((drawn - volume).abs() < 1e-3, "{walls}: {drawn} {volume}");
+    }
+    room.succeeds(
+        "band vine.svg --along line:60mm --width 20mm --chamfer 0.1mm -o band.stl --report band.json",
+    );
+    let report = room.json("band.json");
+    assert_eq!(report["quantities"]["volume_mm3"], report["volume_mm3"]);
+}

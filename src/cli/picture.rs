@@ -24,7 +24,7 @@ impl PictureArgs {
         let default = PictureOptions::default();
         PictureOptions {
             view: self.view,
-            show: if self.show.is_empty() { default.show } else { self.show.clone() },
+            show: self.show.clone(),
             pixels: self.pixels.unwrap_or(default.pixels),
         }
     }

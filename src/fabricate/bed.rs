@@ -31,16 +31,18 @@ impl Bed {
     /// fits as it is, otherwise where the most room is left.
     ///
     /// # Errors
-    /// [`FabricateError::Bed`] with the sizes, when it fits at no angle or is too high.
+    /// [`FabricateError::TooHigh`], and [`FabricateError::Bed`] with the sizes when it fits at no angle.
     pub fn turn_for(&self, region: &Region, thickness_mm: f64) -> Result<f64, FabricateError> {
         let hull = hull(region);
         let as_it_is = size(&hull, 0.0);
-        let is_low = self.height_mm.is_none_or(|height| thickness_mm <= height);
-        if is_low && self.room(as_it_is) >= 0.0 {
+        if self.height_mm.is_some_and(|height| thickness_mm > height) {
+            return Err(FabricateError::TooHigh { height_mm: thickness_mm, bed: *self });
+        }
+        if self.room(as_it_is) >= 0.0 {
             return Ok(0.0);
         }
         let best = self.roomiest(&hull);
-        if !is_low || self.room(size(&hull, best)) < 0.0 {
+        if self.room(size(&hull, best)) < 0.0 {
             return Err(FabricateError::Bed {
                 part_mm: [as_it_is.x, as_it_is.y, thickness_mm],
                 turn_deg: best.to_degrees(),
@@ -199,7 +201,8 @@ mod tests {
         assert!(text.contains("150.00 x 4.00 x 2.00 mm") && text.contains("100 x 100 mm"), "{text}");
         let low = Bed { height_mm: Some(1.5), ..bed(300.0, 300.0) };
         let text = low.turn_for(&strip, 2.0).unwrap_err().to_string();
-        assert!(text.contains("300 x 300 x 1.5 mm"), "{text}");
+        assert!(text.contains("is 2.00 mm high") && text.contains("300 x 300 x 1.5 mm"), "{text}");
+        assert!(text.contains("room for 1.5 mm") && !text.contains("turned"), "{text}");
     }
 
     proptest! {

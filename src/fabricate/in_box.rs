@@ -16,8 +16,29 @@ const TRIES: usize = 3;
 /// How far from the ink the frame is, and how wide, in sums of both widths: farther than ink grows.
 const FRAME: f64 = 4.0;
 
+/// How a drawing was pressed together, in millimetres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pressed {
+    /// The lower left and the upper right corner of the box around it before.
+    pub from: [DVec2; 2],
+    /// The same after.
+    pub to: [DVec2; 2],
+}
+
+impl Pressed {
+    /// Where a point of the drawing has gone.
+    pub fn moved(&self, p: DVec2) -> DVec2 {
+        self.to[0] + (p - self.from[0]) * ((self.to[1] - self.to[0]) / (self.from[1] - self.from[0]))
+    }
+
+    /// By how much the drawing has become narrower and lower.
+    pub fn by_mm(&self) -> DVec2 {
+        (self.from[1] - self.from[0]) - (self.to[1] - self.to[0])
+    }
+}
+
 /// As [`enforce`], within the same box, with round tips round; the region may be on a finer grid. Where there is no way to,
-/// tips are cut off straight.
+/// tips are cut off straight. Areas are those of the region as it was given, and changes those after it was pressed.
 ///
 /// # Errors
 /// As [`enforce`].
@@ -25,6 +46,7 @@ pub fn enforce_in_box(region: &Region, options: &EnforceOptions) -> Result<Enfor
     let Some((low, high)) = region.bounds_mm() else { return enforce(region, options) };
     let counts = Counts::of(region);
     let mut pressed = region.clone();
+    let mut press = None;
     let [mut left_below, mut right_above] = [DVec2::ZERO; 2];
     for _ in 0..TRIES {
         let Ok(free) = enforced_freely(&pressed, options) else { break };
@@ -34,18 +56,29 @@ pub fn enforce_in_box(region: &Region, options: &EnforceOptions) -> Result<Enfor
             // The rest is less than anything that matters.
             let fits = between(&free.region, [least, most], [low.max(least), high.min(most)]);
             match fits.filter(|fits| Counts::of(fits) == counts) {
-                Some(region) => return Ok(Enforced { region, ..free }),
+                Some(made) => return Ok(Enforced { pressed: press, ..measured(region, made, free) }),
                 None => break,
             }
         }
         left_below += over[0];
         right_above += over[1];
-        match between(region, [low, high], [low + left_below, high - right_above]) {
-            Some(narrower) if Counts::of(&narrower) == counts => pressed = narrower,
+        let to = [low + left_below, high - right_above];
+        match between(region, [low, high], to) {
+            Some(narrower) if Counts::of(&narrower) == counts => {
+                (pressed, press) = (narrower, Some(Pressed { from: [low, high], to }));
+            }
             _ => break,
         }
     }
     enforce(region, options)
+}
+
+/// What was `enforced`, with `made` of it and the areas by which that differs from the region `before` it was pressed.
+fn measured(before: &Region, made: Region, enforced: Enforced) -> Enforced {
+    let Ok(before) = before.placed(made.grid(), |p| p) else { return Enforced { region: made, ..enforced } };
+    let both_mm2 = Region::union(made.grid(), [&before, &made]).area_mm2();
+    let [added_mm2, removed_mm2] = [&before, &made].map(|region| (both_mm2 - region.area_mm2()).max(0.0));
+    Enforced { region: made, added_mm2, removed_mm2, ..enforced }
 }
 
 /// The region with the box of one pair of corners moved to another; as it is where they are the same.
@@ -56,7 +89,8 @@ fn between(region: &Region, from: [DVec2; 2], to: [DVec2; 2]) -> Option<Region> 
     let size = from[1] - from[0];
     let scale = (to[1] - to[0]) / size;
     let is_sound = size.min_element() > 0.0 && scale.min_element() > 0.5;
-    is_sound.then(|| region.placed(region.grid(), |p| to[0] + (p - from[0]) * scale).ok()).flatten()
+    let pressed = Pressed { from, to };
+    is_sound.then(|| region.placed(region.grid(), |p| pressed.moved(p)).ok()).flatten()
 }
 
 /// What is enforced when no box is in the way.
@@ -122,6 +156,11 @@ mod tests {
         assert_eq!(Counts::of(&made.region), Counts::of(&before));
         let eroded = made.region.offset(-0.295, 0.001);
         assert!(Counts::of(&eroded) == Counts::of(&before) && made.added_mm2 > 5.0);
+        let after_mm2 = before.area_mm2() + made.added_mm2 - made.removed_mm2;
+        assert!((made.region.area_mm2() - after_mm2).abs() < 1e-6, "{after_mm2}");
+        let pressed = made.pressed.unwrap();
+        assert!((pressed.by_mm() - 0.3).abs().max_element() < 0.05, "{pressed:?}");
+        assert_eq!(pressed.moved(pressed.from[1]), pressed.to[1]);
         // No flat sides: the outer contour is round everywhere.
         let outer = made.region.parts()[0].exterior();
         let grid = made.region.grid();

@@ -40,7 +40,7 @@ pub use bays::{FilledBay, filled_bays};
 pub use bed::Bed;
 pub use bridge::{Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts, bridge};
 pub use enforce::{Change, EnforceError, EnforceOptions, Enforced, TIP, enforce};
-pub use in_box::enforce_in_box;
+pub use in_box::{Pressed, enforce_in_box};
 pub use kerf::{KerfError, check_kerf, compensated};
 pub use limit::{Limited, raise_within};
 pub use material::{Material, MaterialReport};
@@ -114,6 +114,17 @@ pub enum FabricateError {
         chord_mm: f64,
         /// What would do.
         remedy: String,
+    },
+    /// The part is higher than the printer's room.
+    #[error(
+        "the part is {height_mm:.2} mm high, and the bed of {} has room for {} mm; make it thinner, with a smaller \
+         --thickness, or give a higher bed", room(bed), bed.height_mm.unwrap_or(f64::INFINITY)
+    )]
+    TooHigh {
+        /// The height of the part.
+        height_mm: f64,
+        /// The bed.
+        bed: Bed,
     },
     /// The part does not fit the printer.
     #[error(

@@ -96,6 +96,8 @@ fn as_pair<S: serde::Serializer>(v: &DVec2, serializer: S) -> Result<S::Ok, S::E
 pub struct Carved {
     /// All that is left of the plate, from its lower left corner: the sign, and the pieces that fall out.
     pub plate: Region,
+    /// The sign alone.
+    pub sign: Region,
     /// The pieces that fall out.
     pub fallen: Region,
     /// Where they are and how large, in the order of their least points.
@@ -155,9 +157,11 @@ pub fn carved(pattern: &Region, sheet: SheetSize, edge_mm: f64) -> Result<Carved
     // The pattern does not reach the border, so one part has it for its exterior.
     let area = |part: &&Part| part.exterior().doubled_area();
     let holds = left.parts().iter().max_by_key(area).ok_or(SheetError::Empty)?;
-    let loose = left.parts().iter().filter(|part| *part != holds).flat_map(Part::contours);
-    let fallen =
-        Region::from_contours(grid, loose.cloned().collect()).expect("parts of a region are a region");
+    let only = |is_sign: bool| {
+        let parts = left.parts().iter().filter(|part| (*part == holds) == is_sign).flat_map(Part::contours);
+        Region::from_contours(grid, parts.cloned().collect()).expect("parts of a region are a region")
+    };
+    let (sign, fallen) = (only(true), only(false));
     let piece = |part: &Part| {
         let (low, high) = part.exterior().bounds();
         let (low, high) = (grid.to_mm(low), grid.to_mm(high));
@@ -165,7 +169,7 @@ pub fn carved(pattern: &Region, sheet: SheetSize, edge_mm: f64) -> Result<Carved
         FallenPiece { position_mm: (low + high) / 2.0, size_mm: high - low, area_mm2 }
     };
     let falls_out = fallen.parts().iter().map(piece).collect();
-    Ok(Carved { plate: left, fallen, falls_out })
+    Ok(Carved { plate: left, sign, fallen, falls_out })
 }
 
 #[cfg(test)]
@@ -199,6 +203,7 @@ mod tests {
         assert_eq!(counts(&pattern), (3, 1));
         let carved = carved(&pattern, SHEET, 1.0).unwrap();
         assert_eq!((counts(&carved.plate), counts(&carved.fallen)), ((2, 3), (1, 1)));
+        assert_eq!(counts(&carved.sign), (1, 2));
         let [piece] = carved.falls_out[..] else { panic!("{:?}", carved.falls_out) };
         assert!((piece.area_mm2 - 96.0).abs() < 1e-4 && piece.size_mm.distance(DVec2::splat(10.0)) < 1e-6);
         assert!(piece.position_mm.distance(DVec2::new(25.0, 20.0)) < 1e-6, "{}", piece.position_mm);

@@ -1,6 +1,6 @@
 //! A band along a curve: from the exemplar to verified files.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 
@@ -13,7 +13,7 @@ use super::describe::describe;
 use super::error::JobError;
 use super::extrude::{file_name, name};
 use super::laser::Cutting;
-use super::making::{self, Border, Quantities};
+use super::making::{self, Border, Mended, Quantities};
 use super::output::{Format, Output, Pending, Target, persist};
 use super::part::{Part, PartError};
 use super::picture::Pictured;
@@ -28,9 +28,9 @@ use crate::exemplar::{Limits, read_path};
 use crate::export::{self, MeshDocument, SvgDocument, SvgOptions};
 use crate::fabricate::{self, Counts, Solid};
 use crate::fit::{FitOptions, Outline, Prepared, Sides, StitchMethod};
-use crate::planar::Region;
+use crate::planar::{Region, Tolerances};
 use crate::topology::Topology;
-use crate::verify::{self, Expected, Mismatch, Narrowest, SvgReport};
+use crate::verify::{self, Expected, Mismatch, NarrowPlaces, Narrowest, SvgReport};
 
 /// The chord error is shared out: these parts are for bending, for mapping and for fitting curves to the SVG, and
 /// what is left for flattening the exemplar.
@@ -234,10 +234,19 @@ impl Band {
         if !self.job.options.enforce {
             return Ok(());
         }
-        let made = clock
-            .time(Stage::Enforce, || making::enforced(&self.part.region, &self.job.tolerances, border))?;
-        let Some((region, enforced)) = made else { return Ok(()) };
+        let (region, tolerances) = (&self.part.region, &self.job.tolerances);
+        let made = clock.time(Stage::Enforce, || match self.job.options.laser.plate() {
+            Some(sheet) => making::enforced_in_plate(region, tolerances, border, sheet),
+            None => making::enforced(region, tolerances, border),
+        })?;
+        let Some(Mended { region, report: enforced, pressed }) = made else { return Ok(()) };
         self.part.region = fabricate::snapped_to_f32(&region)?;
+        if let Some(pressed) = pressed {
+            self.part.seams_mm.iter_mut().flatten().for_each(|p| *p = pressed.moved(*p));
+            if let Some(bridges) = &mut self.report.bridges {
+                bridges.press(&pressed);
+            }
+        }
         let made = &mut self.report.made;
         made.notes.push(enforced.note());
         (made.area_mm2, made.vertices) = (self.part.region.area_mm2(), self.part.region.vertices());
@@ -297,9 +306,7 @@ impl Band {
         );
         let Drawn { drawing, found } = drawn.map_err(|error| match error {
             JobError::Mismatch { mismatch, remedy, .. } => {
-                let shown = outputs.iter().find(|o| o.format() == Format::Svg).or(outputs.first());
-                let file = shown.map_or_else(|| DRAWING.into(), |o| name(o.target()));
-                JobError::Mismatch { file, mismatch, remedy }
+                JobError::Mismatch { file: shown(outputs), mismatch, remedy }
             }
             error => error,
         })?;
@@ -310,7 +317,14 @@ impl Band {
             false => None,
         };
         let mut pending = Vec::new();
-        report.made.narrow_places.clone_from(&found.narrow_places);
+        // A sign is judged as it is left of its plate, and its pattern is not.
+        let narrow_places = match cutting.as_ref().filter(|_| laser.carve) {
+            Some(cutting) => clock.time(Stage::Verify, || self.judge(cutting.kept(), outputs))?,
+            None => found.narrow_places.clone(),
+        };
+        let min_feature = narrow_places.ink.first().copied();
+        (report.made.min_feature, report.made.min_gap) = (min_feature, narrow_places.gaps.first().copied());
+        report.made.narrow_places.clone_from(&narrow_places);
         let mut digests = Vec::new();
         let mut sizes = Vec::new();
         let mut digest = |output: &Output, bytes: &[u8]| {
@@ -319,7 +333,8 @@ impl Band {
         };
         for output in outputs {
             if let Some(cutting) = cutting.as_mut().filter(|_| laser.makes(output.format())) {
-                let (item, bytes) = cutting.write(output, &mut clock)?;
+                let (item, bytes) =
+                    cutting.write(output, &self.job.options.picture, &narrow_places, &mut clock)?;
                 sizes.push(bytes.len());
                 // A certificate counts the pattern, and not what is left around it.
                 if laser.cuts(output.format()) && !laser.carve {
@@ -372,11 +387,24 @@ impl Band {
             };
             pending.push(item);
         }
+        let options = &self.job.options;
+        report.made.quantities = Some(match cutting.as_ref().and_then(Cutting::sign) {
+            Some(sign) => Quantities::new(sign, options.thickness_mm, None, options.material.as_ref()),
+            None => {
+                let is_upright = options.print.profile(options.thickness_mm)?.is_upright();
+                let make = |notes: &mut Vec<String>| self.solid(notes);
+                let volume_mm3 = clock.time(Stage::Stl, || meshes.volume_mm3(is_upright, make))?;
+                let (region, material) = (&self.part.region, options.material.as_ref());
+                Quantities::new(region, options.thickness_mm, volume_mm3, material)
+            }
+        });
         report.made.notes.append(&mut meshes.notes);
-        if let Some(narrowest) = found.min_feature.filter(|n| n.width_mm < HAIRLINE_MM) {
+        if let Some(narrowest) = min_feature.filter(|n| n.width_mm < HAIRLINE_MM) {
             report.made.notes.push(format!(
-                "ink only {:.3} mm wide holds the band together, which hardly any machine makes; a larger --width makes it wider in proportion",
-                narrowest.width_mm
+                "{} only {:.3} mm wide holds the {} together, which hardly any machine makes; a larger --width makes it wider in proportion",
+                if laser.carve { "material" } else { "ink" },
+                narrowest.width_mm,
+                if laser.carve { "plate" } else { "band" },
             ));
         }
         let narrowest_mm = found.min_feature.map(|n| n.width_mm);
@@ -387,31 +415,51 @@ impl Band {
         report.made.certificate.seal([found.components, found.holes], digests);
         report.components = found.components;
         report.holes = found.holes;
-        report.made.min_feature = found.min_feature;
-        report.made.min_gap = found.min_gap;
-        let options = &self.job.options;
-        report.made.quantities =
-            Some(Quantities::new(&self.part.region, options.thickness_mm, options.material.as_ref()));
         report.made.files = outputs.iter().map(|o| name(o.target()).display().to_string()).collect();
         report.made.times.extend(clock.times);
         Ok((report, pending))
     }
 
-    /// What every file has to have.
+    /// What every file has to have. The widths of a pattern that is carved out of a plate are those of the plate, which is
+    /// judged by itself.
     fn expected(&self) -> Expected {
-        Expected {
+        let counts = Expected {
             components: Some(self.counts.components.into()),
             holes: Some(self.counts.holes.into()),
-            min_feature_mm: self.job.tolerances.min_feature_mm(),
-            min_gap_mm: self.job.tolerances.min_gap_mm(),
+            ..Expected::default()
+        };
+        match self.job.options.laser.carve {
+            true => counts,
+            false => Expected {
+                min_feature_mm: self.job.tolerances.min_feature_mm(),
+                min_gap_mm: self.job.tolerances.min_gap_mm(),
+                ..counts
+            },
         }
+    }
+
+    /// The tolerances of what is kept: of the part, or of the plate that it is carved out of.
+    fn kept_tolerances(&self) -> Tolerances {
+        // Twice swapped is not swapped.
+        self.job.options.laser.of_pattern(&self.job.tolerances)
+    }
+
+    /// The narrowest places of what is left of a plate, which keeps the widths.
+    fn judge(&self, kept: &Region, outputs: &[Output]) -> Result<NarrowPlaces, JobError> {
+        let tolerances = self.kept_tolerances();
+        let places = making::worst_places(kept, &tolerances);
+        making::check_widths(kept, &tolerances)
+            .map_err(|mismatch| self.mismatch(shown(outputs), mismatch, &places))?;
+        Ok(places)
     }
 
     /// The drawing, which has passed: the promise at the machine's tolerance is checked on it, so it is always made.
     fn drawn(&self, clock: &mut Clock<'_>) -> Result<Drawn, JobError> {
         let drawing = clock.time(Stage::Svg, || self.svg())?;
         let found = clock.time(Stage::Verify, || self.read_svg(drawing.text.as_bytes()))?;
-        found.check(&self.expected()).map_err(|mismatch| self.mismatch(DRAWING.into(), mismatch, &found))?;
+        found
+            .check(&self.expected())
+            .map_err(|mismatch| self.mismatch(DRAWING.into(), mismatch, &found.narrow_places))?;
         Ok(Drawn { drawing, found })
     }
 
@@ -437,10 +485,11 @@ impl Band {
 
     /// The part as cut lines.
     fn cutting(&self) -> Result<Cutting, JobError> {
-        let chord_mm = self.job.tolerances.chord_mm();
+        let tolerances = self.kept_tolerances();
+        let curve_chord_mm = tolerances.chord_mm() * SVG_SHARE;
         let of = format!("{} of {}", self.report.generator, file_name(&self.job.options.exemplar));
         let laser = &self.job.options.laser;
-        Cutting::new(laser, &self.part.region, self.part.page_mm, [chord_mm, chord_mm * SVG_SHARE], of)
+        Cutting::new(laser, &self.part.region, self.part.page_mm, &tolerances, curve_chord_mm, of)
     }
 
     /// The part as a binary STL solid.
@@ -479,8 +528,8 @@ impl Band {
             .map_err(|error| JobError::Unjudged { file: DRAWING.into(), error })
     }
 
-    fn mismatch(&self, file: std::path::PathBuf, mismatch: Mismatch, found: &SvgReport) -> JobError {
-        let scale = |narrowest: Option<Narrowest>, wanted: f64, option: &str| {
+    fn mismatch(&self, file: PathBuf, mismatch: Mismatch, found: &NarrowPlaces) -> JobError {
+        let scale = |narrowest: Option<&Narrowest>, wanted: f64, option: &str| {
             let factor = narrowest.map(|n| wanted / n.width_mm).filter(|f| f.is_finite() && *f < 100.0);
             let width = factor.map(|f| format!("--width {:.0}mm or more", (self.report.width_mm * f).ceil()));
             // A tile cannot be mended, and what was mended has been.
@@ -490,12 +539,12 @@ impl Band {
                 width.unwrap_or_else(|| "a larger --width".to_owned())
             )
         };
-        let tolerances = &self.job.tolerances;
+        let tolerances = &self.kept_tolerances();
         let remedy = match mismatch {
             Mismatch::Feature { .. } => {
-                scale(found.min_feature, tolerances.min_feature_mm(), "--min-feature")
+                scale(found.ink.first(), tolerances.min_feature_mm(), "--min-feature")
             }
-            Mismatch::Gap { .. } => scale(found.min_gap, tolerances.min_gap_mm(), "--min-gap"),
+            Mismatch::Gap { .. } => scale(found.gaps.first(), tolerances.min_gap_mm(), "--min-gap"),
             Mismatch::Components { .. } | Mismatch::Holes { .. } => {
                 let chord_mm = tolerances.chord_mm();
                 format!(
@@ -506,6 +555,12 @@ impl Band {
         };
         JobError::Mismatch { file, mismatch, remedy }
     }
+}
+
+/// The output that is named when the part is at fault.
+fn shown(outputs: &[Output]) -> PathBuf {
+    let shown = outputs.iter().find(|o| o.format() == Format::Svg).or(outputs.first());
+    shown.map_or_else(|| DRAWING.into(), |o| name(o.target()))
 }
 
 fn read_curve(

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::plan::PlanError;
 use crate::domain::BandMap;
-use crate::fabricate::{self, Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts};
+use crate::fabricate::{self, Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts, Pressed};
 use crate::planar::{GridPoint, Region, Tolerances};
 use crate::solver::Refusal;
 use crate::topology::{Goal, Topology, Wanted};
@@ -33,6 +33,15 @@ pub struct BridgesReport {
 }
 
 impl BridgesReport {
+    /// Moves the bridges with the drawing that they are in. Their lengths and widths stay those with which they were laid.
+    pub(super) fn press(&mut self, pressed: &Pressed) {
+        let press = |p: &mut [f64; 2]| *p = pressed.moved(DVec2::from(*p)).to_array();
+        for bridge in &mut self.bridges {
+            [&mut bridge.from_mm, &mut bridge.to_mm].into_iter().for_each(press);
+            bridge.corners_mm.iter_mut().chain(bridge.pockets_mm.iter_mut().flatten()).for_each(press);
+        }
+    }
+
     pub(super) fn new(without: Counts, bridges: Vec<Bridge>) -> Self {
         let (struts, slits): (Vec<&Bridge>, Vec<&Bridge>) = bridges.iter().partition(|b| b.kind.is_strut());
         let length = |of: &[&Bridge]| of.iter().fold(0.0, |sum, b| sum + b.length_mm);

@@ -282,7 +282,8 @@ impl BandBuilder {
     /// [`JobError`] names the first option that is out of range or contradicts another.
     pub fn build(self) -> Result<BandJob, JobError> {
         self.weights.validate()?;
-        let tolerances = Tolerances::new(self.chord_mm, self.min_feature_mm, self.min_gap_mm)?;
+        let kept = Tolerances::new(self.chord_mm, self.min_feature_mm, self.min_gap_mm)?;
+        let tolerances = self.laser.of_pattern(&kept);
         if let Some(width) = self.width_mm {
             in_range("--width", width, 0.5, 10_000.0)?;
         }
@@ -333,6 +334,7 @@ fn out_of_range(option: &'static str, value: f64, wanted: &str) -> JobError {
 #[derive(Debug, Clone)]
 pub struct BandJob {
     pub(super) options: BandBuilder,
+    /// What the pattern must keep to: of one that is carved out of a plate, the ink is the gaps of what is kept.
     pub(super) tolerances: Tolerances,
     pub(super) variety: Option<Variety>,
     /// The memory that the search may take, in bytes.
@@ -349,6 +351,9 @@ impl BandJob {
     pub fn check_outputs(&self, outputs: &[Output], report_file: Option<&Target>) -> Result<(), JobError> {
         self.options.laser.check(outputs)?;
         self.options.picture.check(outputs)?;
+        if self.options.laser.carve {
+            self.options.picture.check_sign()?;
+        }
         self.check_targets(outputs.iter().map(Output::target).chain(report_file))
     }
 

@@ -155,6 +155,7 @@ impl JobError {
                 | FabricateError::Chamfer { .. }
                 | FabricateError::Taper { .. }
                 | FabricateError::TooManyTriangles { .. }
+                | FabricateError::TooHigh { .. }
                 | FabricateError::Bed { .. },
             ) => 2,
             Self::Fabricate(FabricateError::Inset { .. }) => 3,

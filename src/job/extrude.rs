@@ -11,7 +11,7 @@ use super::error::JobError;
 use super::laser::{Cutting, LaserOptions, LaserReport};
 use super::making::{self, Border, EnforcedReport, Quantities};
 use super::output::{Format, Output, Pending, Target, persist};
-use super::picture::{PictureOptions, Pictured};
+use super::picture::{PictureOptions, Pictured, Show};
 use super::print::{MeshFile, Meshes, PrintOptions};
 use super::report::{InputReport, StageTime};
 use super::small;
@@ -100,6 +100,17 @@ impl ExtrudeMaking {
         }
         self.laser.check(outputs)?;
         self.picture.check(outputs)?;
+        if self.laser.carve {
+            self.picture.check_sign()?;
+        }
+        if self.picture.show.contains(&Show::Seams) {
+            return Err(JobError::Option {
+                option: "--show",
+                found: "seams are where pieces of a band meet, and a drawing that is extruded has none"
+                    .to_owned(),
+                wanted: "use --show thin or bridges".to_owned(),
+            });
+        }
         self.print.profile(self.thickness_mm)?;
         Ok(())
     }
@@ -131,20 +142,23 @@ pub fn extrude(
         limits: Limits::default(),
     };
     let drawing = clock.time(Stage::Read, || Exemplar::read(file, &options))?;
+    let of_pattern = laser.of_pattern(tolerances);
     let mut region = drawing.region().clone();
     let mut notes = drawing.notes().to_vec();
     let bridges = match bridges {
-        Some(wanted) => Some(clock.time(Stage::Bridge, || lay(&mut region, wanted, tolerances))?),
+        Some(wanted) => Some(clock.time(Stage::Bridge, || lay(&mut region, wanted, &of_pattern))?),
         None => None,
     };
     notes.extend(bridges.as_ref().map(|report| report.note(Counts::of(&region))));
     let mut enforced = None;
     if enforce
-        && let Some((mended, report)) =
-            clock.time(Stage::Enforce, || making::enforced(&region, tolerances, Border::Straight))?
+        && let Some(mended) = clock.time(Stage::Enforce, || match laser.plate() {
+            Some(sheet) => making::enforced_in_plate(&region, &of_pattern, Border::Straight, sheet),
+            None => making::enforced(&region, tolerances, Border::Straight),
+        })?
     {
-        notes.push(report.note());
-        (region, enforced) = (mended, Some(report));
+        notes.push(mended.report.note());
+        (region, enforced) = (mended.region, Some(mended.report));
     }
     let expected = Expected {
         components: Some(region.components().into()),
@@ -153,35 +167,37 @@ pub fn extrude(
     };
     let raise = |notes: &mut Vec<String>| print.solid(&region, thickness_mm, tolerances.chord_mm(), notes);
     let document = print.document(file, None, Counts::of(&region));
+    let mut cutting = match laser.is_needed(outputs) {
+        true => {
+            let page_mm = DVec2::from(drawing.page_mm());
+            let curve_chord_mm = tolerances.chord_mm() * (1.0 - READ_SHARE);
+            let of = format!("{} of {}", generator(), file_name(file));
+            Some(clock.time(Stage::CutLines, || {
+                Cutting::new(laser, &region, page_mm, tolerances, curve_chord_mm, of)
+            })?)
+        }
+        false => None,
+    };
+    let kept = cutting.as_ref().filter(|_| laser.carve).map_or(&region, Cutting::kept);
     // Neither needs the other.
     let (narrow_places, meshes) = clock.both(
         |clock| {
             clock.time(Stage::Verify, || {
-                let narrow_places = making::worst_places(&region, tolerances);
-                check_widths(&region, tolerances, file, enforce).map(|()| narrow_places)
+                let narrow_places = making::worst_places(kept, tolerances);
+                check_widths(kept, tolerances, file, enforce).map(|()| narrow_places)
             })
         },
         |clock| Meshes::new(outputs, picture.view.is_some(), &document, &expected, clock, raise),
     );
     let narrow_places = narrow_places?;
     let mut meshes = meshes?;
-    let mut cutting = match laser.is_needed(outputs) {
-        true => {
-            let page_mm = DVec2::from(drawing.page_mm());
-            let chord_mm = tolerances.chord_mm();
-            let chords_mm = [chord_mm, chord_mm * (1.0 - READ_SHARE)];
-            let of = format!("{} of {}", generator(), file_name(file));
-            Some(clock.time(Stage::CutLines, || Cutting::new(laser, &region, page_mm, chords_mm, of))?)
-        }
-        false => None,
-    };
     let (mut solid, mut drawn) = (None, None);
     let mut pending = Vec::with_capacity(outputs.len());
     let mut sizes = Vec::with_capacity(outputs.len());
     for output in outputs {
         let target = output.target();
         if let Some(cutting) = cutting.as_mut().filter(|_| laser.makes(output.format())) {
-            let (item, bytes) = cutting.write(output, &mut clock)?;
+            let (item, bytes) = cutting.write(output, picture, &narrow_places, &mut clock)?;
             sizes.push(bytes.len());
             pending.push(item);
             continue;
@@ -199,7 +215,7 @@ pub fn extrude(
                 let bytes = clock.time(Stage::Svg, || svg(&region, &drawing, file, chord_mm))?;
                 sizes.push(bytes.len());
                 let item = Pending::new(target, bytes)?;
-                drawn = Some(clock.time(Stage::Verify, || check_svg(target, &item, &expected, chord_mm))?);
+                drawn = Some(clock.time(Stage::Verify, || check_svg(target, &item, &expected, tolerances))?);
                 item
             }
             Format::Png => {
@@ -220,6 +236,14 @@ pub fn extrude(
         };
         pending.push(item);
     }
+    let quantities = match cutting.as_ref().and_then(Cutting::sign) {
+        Some(sign) => Quantities::new(sign, thickness_mm, None, material.as_ref()),
+        None => {
+            let is_upright = print.profile(thickness_mm)?.is_upright();
+            let volume_mm3 = clock.time(Stage::Stl, || meshes.volume_mm3(is_upright, raise))?;
+            Quantities::new(&region, thickness_mm, volume_mm3, material.as_ref())
+        }
+    };
     let narrowest_mm = narrow_places.ink.first().map(|n| n.width_mm);
     notes.append(&mut meshes.notes);
     notes.extend(small::warnings(&region, tolerances, outputs, narrowest_mm));
@@ -233,7 +257,7 @@ pub fn extrude(
         bridges,
         enforced,
         narrow_places,
-        quantities: Quantities::new(&region, thickness_mm, material.as_ref()),
+        quantities,
         bytes: sizes,
         solid,
         drawing: drawn,
@@ -244,26 +268,17 @@ pub fn extrude(
     })
 }
 
-/// The widths that were asked for are those of the outline, whatever files are made of it.
+/// The widths that were asked for are those of what is kept, whatever files are made of it.
 fn check_widths(
     region: &Region,
     tolerances: &Tolerances,
     file: &Path,
     is_enforced: bool,
 ) -> Result<(), JobError> {
-    let (feature_mm, gap_mm) = (tolerances.min_feature_mm(), tolerances.min_gap_mm());
-    // As finely as a written file is judged.
-    let chord_mm = 0.25 * tolerances.chord_mm();
-    let mismatch = if feature_mm > 0.0 && !verify::endures_erosion(region, 0.5 * feature_mm, chord_mm) {
-        let narrowest = verify::min_feature(region, feature_mm, chord_mm);
-        Mismatch::Feature { wanted_mm: feature_mm, narrowest }
-    } else if gap_mm > 0.0 && !verify::endures_dilation(region, 0.5 * gap_mm, chord_mm) {
-        Mismatch::Gap { wanted_mm: gap_mm, narrowest: verify::min_gap(region, gap_mm, chord_mm) }
-    } else {
-        return Ok(());
-    };
-    let remedy = if is_enforced { "" } else { "; --enforce would mend it" }.to_owned();
-    Err(JobError::Mismatch { file: file.to_owned(), mismatch, remedy })
+    making::check_widths(region, tolerances).map_err(|mismatch| {
+        let remedy = if is_enforced { "" } else { "; --enforce would mend it" }.to_owned();
+        JobError::Mismatch { file: file.to_owned(), mismatch, remedy }
+    })
 }
 
 fn generator() -> String {
@@ -306,12 +321,15 @@ fn check_svg(
     target: &Target,
     pending: &Pending,
     expected: &Expected,
-    chord_mm: f64,
+    tolerances: &Tolerances,
 ) -> Result<SvgReport, JobError> {
     let bytes = pending.read_again()?;
-    let report = verify::read_svg(&bytes, chord_mm / 4.0)
+    let report = verify::read_svg(&bytes, tolerances.chord_mm() / 4.0)
         .map_err(|error| JobError::Unjudged { file: name(target), error })?;
     report.check(expected).map_err(|mismatch| mismatched(target, mismatch))?;
+    // The outline has the whole widths; curves that stand for it take off their part on either side.
+    making::check_widths_less(&report.region, tolerances, tolerances.chord_mm())
+        .map_err(|mismatch| mismatched(target, mismatch))?;
     Ok(report)
 }
 

@@ -1,7 +1,8 @@
 //! Files for a laser or a waterjet: the part as cut lines, with kerf, on a plate, and what cutting takes.
 //!
 //! The contours are moved by half of the kerf and fitted with lines and arcs. Each file is read again: its lines must
-//! be sound, leave as many components and holes as are wanted, and do so too when the kerf is taken off again.
+//! be sound, leave as many components and holes as are wanted, and do so too when the kerf is taken off again; and what is
+//! left keeps the widths that were asked for.
 
 use std::path::PathBuf;
 
@@ -12,13 +13,15 @@ use serde::Serialize;
 use super::engrave::Engraving;
 use super::error::JobError;
 use super::extrude::name;
+use super::making;
 use super::output::{Format, Output, Pending};
+use super::picture::PictureOptions;
 use super::report::InputReport;
 use super::stage::{Clock, Stage};
 use crate::export::{self, Curves, CutLines, CutNumbers, DxfVersion, Layer, LayerColours, Marks, SvgOptions};
 use crate::fabricate::{self, Counts, FabricateError, FallenPiece, FilledBay, SheetSize};
-use crate::planar::{GridPoint, Region};
-use crate::verify::{self, CutReport, Expected, Mismatch};
+use crate::planar::{GridPoint, Region, Tolerances};
+use crate::verify::{self, CutReport, Expected, Mismatch, NarrowPlaces};
 
 /// A plate needs so much material around the part, in millimetres, or three kerfs if that is more. Less, and what is
 /// left of its edge breaks or burns away.
@@ -50,6 +53,16 @@ pub struct LaserOptions {
 }
 
 impl LaserOptions {
+    /// The tolerances of the pattern, when what is kept has those of `kept`: the ink of what is carved out of a plate is its gaps.
+    pub(super) fn of_pattern(&self, kept: &Tolerances) -> Tolerances {
+        if self.carve { kept.swapped() } else { *kept }
+    }
+
+    /// The plate out of which the part is carved, if it is.
+    pub(super) fn plate(&self) -> Option<SheetSize> {
+        self.sheet.filter(|_| self.carve)
+    }
+
     /// Whether a file of this format has cut lines.
     pub(super) fn cuts(&self, format: Format) -> bool {
         format == Format::Dxf || (format == Format::Svg && self.cut)
@@ -85,6 +98,7 @@ impl LaserOptions {
             return refuse("--carve", &found, "write a .dxf, a .png, or an .svg with --cut");
         }
         let given = [
+            ("--cut", self.cut),
             ("--kerf", self.kerf_mm.is_some()),
             ("--sheet", self.sheet.is_some()),
             ("--engrave", self.engrave.is_some()),
@@ -150,11 +164,13 @@ pub(super) struct Cutting {
     options: LaserOptions,
     lines: CutLines,
     page_mm: DVec2,
-    chord_mm: f64,
+    tolerances: Tolerances,
     description: String,
     /// What is kept, and what of it falls out.
     kept: Region,
     fallen: Option<Region>,
+    /// The plate without what falls out, when the part was carved out of it.
+    sign: Option<Region>,
     engraved: Option<Region>,
     /// How far the part was moved on its plate.
     shift: DVec2,
@@ -162,24 +178,27 @@ pub(super) struct Cutting {
 }
 
 impl Cutting {
-    /// The cut lines of a part on its page, or of the plate that it is carved out of. `chords_mm` are the chord error
-    /// asked for and what of it is left for curves.
+    /// The cut lines of a part on its page, or of the plate that it is carved out of. `tolerances` are those of
+    /// what is kept, and `curve_chord_mm` is what of the chord error is left for curves.
     pub(super) fn new(
         options: &LaserOptions,
         part: &Region,
         page_mm: DVec2,
-        chords_mm: [f64; 2],
+        tolerances: &Tolerances,
+        curve_chord_mm: f64,
         description: String,
     ) -> Result<Self, JobError> {
-        let [chord_mm, curve_chord_mm] = chords_mm;
+        let chord_mm = tolerances.chord_mm();
         let edge_mm = EDGE_MM.max(EDGE_KERFS * options.kerf_mm.unwrap_or(0.0));
-        let (kept, fallen, falls_out) = match options.sheet {
+        // What is left of a plate around a sign is ink, and has to be as wide.
+        let carved_edge_mm = edge_mm.max(tolerances.min_feature_mm());
+        let (kept, fallen, sign, falls_out) = match options.sheet {
             Some(sheet) if options.carve => {
-                let carved = fabricate::carved(part, sheet, edge_mm)?;
-                (carved.plate, Some(carved.fallen), Some(carved.falls_out))
+                let carved = fabricate::carved(part, sheet, carved_edge_mm)?;
+                (carved.plate, Some(carved.fallen), Some(carved.sign), Some(carved.falls_out))
             }
-            Some(sheet) => (fabricate::on_sheet(part, sheet, edge_mm)?, None, None),
-            None => (part.clone(), None, None),
+            Some(sheet) => (fabricate::on_sheet(part, sheet, edge_mm)?, None, None, None),
+            None => (part.clone(), None, None, None),
         };
         let cut = match options.kerf_mm {
             Some(kerf_mm) => fabricate::compensated(&kept, kerf_mm, curve_chord_mm)?,
@@ -223,8 +242,30 @@ impl Cutting {
             numbers: lines.numbers(),
             files: Vec::new(),
         };
-        let options = options.clone();
-        Ok(Self { options, lines, page_mm, chord_mm, description, kept, fallen, engraved, shift, report })
+        let (options, tolerances) = (options.clone(), *tolerances);
+        Ok(Self {
+            options,
+            lines,
+            page_mm,
+            tolerances,
+            description,
+            kept,
+            fallen,
+            sign,
+            engraved,
+            shift,
+            report,
+        })
+    }
+
+    /// The sign that is left of the plate without what falls out; `None` when the part itself is kept.
+    pub(super) fn sign(&self) -> Option<&Region> {
+        self.sign.as_ref()
+    }
+
+    /// What is left of the plate, with the pieces that fall out of it: files hold both, and both are judged.
+    pub(super) fn kept(&self) -> &Region {
+        &self.kept
     }
 
     /// What is engraved, on the part's own page.
@@ -234,24 +275,26 @@ impl Cutting {
         Ok(moved.map_err(FabricateError::from)?)
     }
 
-    /// One output, which has passed, and its bytes.
+    /// One output, which has passed, and its bytes. A picture is as `picture` says, with what is narrow in the plate.
     pub(super) fn write(
         &mut self,
         output: &Output,
+        picture: &PictureOptions,
+        narrow: &NarrowPlaces,
         clock: &mut Clock<'_>,
     ) -> Result<(Pending, Vec<u8>), JobError> {
         let bytes = match output.format() {
             Format::Png => clock.time(Stage::Png, || {
                 let (fallen, engraved) = (self.fallen.as_ref(), self.engraved.as_ref());
                 let marks = Marks { fallen, engraved, ..Marks::default() };
-                export::png(&self.kept, &marks, export::DEFAULT_PIXELS)
+                picture.sign_png(&self.kept, marks, narrow)
             })?,
             Format::Svg => clock
                 .time(Stage::CutLines, || {
                     let options = SvgOptions {
                         width_mm: self.page_mm.x,
                         height_mm: self.page_mm.y,
-                        chord_mm: self.chord_mm,
+                        chord_mm: self.tolerances.chord_mm(),
                         title: None,
                         description: Some(self.description.clone()),
                     };
@@ -276,29 +319,38 @@ impl Cutting {
     fn check(&self, output: &Output, bytes: &[u8]) -> Result<CutReport, JobError> {
         let file = || name(output.target());
         let read = if output.format() == Format::Dxf { verify::read_dxf } else { verify::read_cut_svg };
-        let found = read(bytes, self.chord_mm * READ_PART)
-            .map_err(|error| JobError::Unjudged { file: file(), error })?;
+        let chord_mm = self.tolerances.chord_mm();
+        let found =
+            read(bytes, chord_mm * READ_PART).map_err(|error| JobError::Unjudged { file: file(), error })?;
         let expected = Expected {
             components: Some(self.report.components.into()),
             holes: Some(self.report.holes.into()),
             ..Expected::default()
         };
-        let mismatch = |mismatch| JobError::Mismatch {
-            file: file(),
-            mismatch,
-            remedy: "; try a smaller --chord".to_owned(),
+        let mismatch = |mismatch| {
+            let remedy = match mismatch {
+                Mismatch::Feature { .. } | Mismatch::Gap { .. } => "; try a smaller --chord, or --enforce",
+                _ => "; try a smaller --chord",
+            };
+            JobError::Mismatch { file: file(), mismatch, remedy: remedy.to_owned() }
         };
         found.check(&expected).map_err(mismatch)?;
         if let Some(first) = found.open_engraved.first() {
             let count = found.open_engraved.len();
             return Err(mismatch(Mismatch::Cuts { count, first: first.clone() }));
         }
-        if let Some(kerf_mm) = self.options.kerf_mm {
-            // What the beam leaves of the file.
-            let region = found.region.offset(-0.5 * kerf_mm, self.chord_mm * READ_PART);
-            let left = CutReport { region, ..found.clone() };
-            left.check(&expected).map_err(mismatch)?;
-        }
+        let left = match self.options.kerf_mm {
+            Some(kerf_mm) => {
+                // What the beam leaves of the file.
+                let region = found.region.offset(-0.5 * kerf_mm, chord_mm * READ_PART);
+                let left = CutReport { region, ..found.clone() };
+                left.check(&expected).map_err(mismatch)?;
+                left.region
+            }
+            None => found.region.clone(),
+        };
+        // What is kept has the whole widths; curves that stand for it take off their part on either side.
+        making::check_widths_less(&left, &self.tolerances, chord_mm).map_err(mismatch)?;
         Ok(found)
     }
 }

@@ -7,6 +7,7 @@ use super::output::{Format, Output};
 use crate::export::{self, DEFAULT_COLOUR, DEFAULT_PIXELS, Marks, Painted, View};
 use crate::fabricate::{Bridge, Solid};
 use crate::planar::Region;
+use crate::verify::NarrowPlaces;
 
 /// What is marked in a drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -49,7 +50,7 @@ impl FromStr for Show {
 pub struct PictureOptions {
     /// Where the solid is seen from; without one the part is shown as a flat drawing.
     pub view: Option<View>,
-    /// What is marked in a flat drawing.
+    /// What is marked in a flat drawing; when nothing is named, bridges if there are some.
     pub show: Vec<Show>,
     /// The longer side in pixels.
     pub pixels: u32,
@@ -57,7 +58,7 @@ pub struct PictureOptions {
 
 impl Default for PictureOptions {
     fn default() -> Self {
-        Self { view: None, show: vec![Show::Bridges], pixels: DEFAULT_PIXELS }
+        Self { view: None, show: Vec::new(), pixels: DEFAULT_PIXELS }
     }
 }
 
@@ -97,6 +98,38 @@ impl PictureOptions {
         Ok(())
     }
 
+    /// Refuses what the picture of a sign that is carved out of a plate cannot show.
+    ///
+    /// # Errors
+    /// [`JobError::Option`] names the option.
+    pub(super) fn check_sign(&self) -> Result<(), JobError> {
+        let refuse = |option, found: String, wanted: &str| {
+            Err(JobError::Option { option, found, wanted: wanted.to_owned() })
+        };
+        if self.view.is_some() {
+            let found = "a sign that is carved with --carve is cut, and has no solid to be seen".to_owned();
+            return refuse("--view", found, "leave it out, and the picture shows the plate");
+        }
+        match self.show.iter().find(|&&show| show != Show::Thin) {
+            Some(show) => {
+                let found = format!("{} are of the pattern, which --carve cuts away", show.name());
+                refuse("--show", found, "use --show thin, or leave out --carve for a picture of the pattern")
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// The picture of a sign, with what falls out of it and what is engraved in `marks`, and its narrow places.
+    pub(super) fn sign_png(
+        &self,
+        kept: &Region,
+        marks: Marks<'_>,
+        narrow: &NarrowPlaces,
+    ) -> Result<Vec<u8>, JobError> {
+        let narrow_mm = if self.show.contains(&Show::Thin) { narrow.places_mm() } else { Vec::new() };
+        Ok(export::png(kept, &Marks { narrow_mm: &narrow_mm, ..marks }, self.pixels)?)
+    }
+
     /// The shaded picture of a solid, if that is what is asked for, else of the flat part.
     pub(super) fn png<'s>(
         &self,
@@ -107,7 +140,9 @@ impl PictureOptions {
             let painted = Painted { solid: solid()?, colour: DEFAULT_COLOUR };
             return Ok(export::view_png(&[painted], view, self.pixels)?);
         }
-        let shows = |what: Show| self.show.contains(&what);
+        let default = [Show::Bridges];
+        let shown = if self.show.is_empty() { &default[..] } else { &self.show };
+        let shows = |what: Show| shown.contains(&what);
         let marks = Marks {
             bridges: if shows(Show::Bridges) { part.bridges } else { &[] },
             fallen: None,

@@ -119,6 +119,8 @@ pub(super) fn mesh(format: Format, solid: &Solid, document: &MeshDocument) -> Re
 pub(super) struct Meshes {
     /// The solid, once it was made.
     solid: Option<Solid>,
+    /// The volume of the last of the files, as it was read again.
+    read_mm3: Option<f64>,
     /// What the user may want to know of it.
     pub(super) notes: Vec<String>,
     /// The files, in the order of the outputs that they are for.
@@ -158,6 +160,7 @@ impl Meshes {
             let bytes = clock.time(Stage::Stl, || mesh(output.format(), &solid, document))?;
             let item = Pending::new(output.target(), bytes)?;
             let (bytes, found) = clock.time(Stage::Verify, || check_mesh(output, &item, expected))?;
+            meshes.read_mm3 = Some(found.volume_mm3);
             meshes.files.push_back(MeshFile { item, bytes, found });
         }
         Ok(Self { solid: Some(solid), ..meshes })
@@ -166,6 +169,19 @@ impl Meshes {
     /// The next of the files.
     pub(super) fn next(&mut self) -> MeshFile {
         self.files.pop_front().expect("there is one for each output that holds a solid")
+    }
+
+    /// The volume of the solid in cubic millimetres, if one was made or its walls are not upright; else there is no need of
+    /// one.
+    pub(super) fn volume_mm3(
+        &mut self,
+        is_upright: bool,
+        make: impl FnOnce(&mut Vec<String>) -> Result<Solid, JobError>,
+    ) -> Result<Option<f64>, JobError> {
+        if self.read_mm3.is_some() || (is_upright && self.solid.is_none()) {
+            return Ok(self.read_mm3);
+        }
+        Ok(Some(self.solid(make)?.volume_mm3()))
     }
 
     /// The solid that was made before, or the one that is made now.

@@ -52,6 +52,11 @@ impl Tolerances {
         Self::new(chord_mm, self.min_feature_mm, self.min_gap_mm).ok()
     }
 
+    /// The same for a pattern that is cut out of what is kept: its ink is a gap of that, and its gaps are the ink.
+    pub fn swapped(&self) -> Self {
+        Self { min_feature_mm: self.min_gap_mm, min_gap_mm: self.min_feature_mm, ..*self }
+    }
+
     /// The greatest distance between a curve and what stands for it.
     pub fn chord_mm(&self) -> f64 {
         self.chord_mm

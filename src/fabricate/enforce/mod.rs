@@ -33,6 +33,7 @@ use self::grow::{Bounds, complement, difference, grown};
 use self::keep::Kept;
 use self::stroke::{Stroke, guards, lacking, merged};
 use super::Counts;
+use super::in_box::Pressed;
 use crate::planar::{EdgeIndex, Region};
 
 /// Steps for ink and gaps, at most. Ink that is blocked on one side halves what it lacks with each, so that this many
@@ -97,6 +98,8 @@ pub struct Enforced {
     pub added_mm2: f64,
     /// The ink that was taken away in square millimetres.
     pub removed_mm2: f64,
+    /// How the drawing was pressed together before, so that what grew stays in its box; only [`super::enforce_in_box`] does.
+    pub pressed: Option<Pressed>,
 }
 
 /// Why minimum feature and gap cannot be enforced.
@@ -182,7 +185,7 @@ fn size_kept(region: &Region, options: &EnforceOptions) -> Option<(DVec2, DVec2)
 }
 
 fn unchanged(region: &Region) -> Enforced {
-    Enforced { region: region.clone(), changes: Vec::new(), added_mm2: 0.0, removed_mm2: 0.0 }
+    Enforced { region: region.clone(), changes: Vec::new(), added_mm2: 0.0, removed_mm2: 0.0, pressed: None }
 }
 
 /// What became of `before`.
@@ -208,7 +211,13 @@ fn changed(before: &Region, now: Region, options: &EnforceOptions) -> Enforced {
         let place = a.position_mm.partial_cmp(&b.position_mm).unwrap_or(std::cmp::Ordering::Equal);
         b.area_mm2.abs().total_cmp(&a.area_mm2.abs()).then(place)
     });
-    Enforced { region: now, changes, added_mm2: added.area_mm2(), removed_mm2: removed.area_mm2() }
+    Enforced {
+        region: now,
+        changes,
+        added_mm2: added.area_mm2(),
+        removed_mm2: removed.area_mm2(),
+        pressed: None,
+    }
 }
 
 /// What grows in a step.
