@@ -6,19 +6,33 @@ mod common;
 use common::{Finished, Room};
 use serde_json::Value;
 
-/// Three ways of using the search and the geometry: a ring, an open path with jumps, a band with variety.
-const JOBS: [&str; 3] = [
-    "band vine.svg --along circle:65mm --width 14mm --components 1 --closed-pattern --seed 7",
-    "band leaves.svg --along path:curve.svg --width 9mm --seed 3",
-    "band wave.svg --along line:60mm --width 10mm --components 1 --variety 0.5",
+/// Ways of using the search and the geometry: a ring, an open path with jumps, a band with variety, and two that are mended,
+/// shaded, cut and printed. With what each writes.
+const JOBS: [(&str, &[&str]); 5] = [
+    (
+        "band vine.svg --along circle:65mm --width 14mm --components 1 --closed-pattern --seed 7",
+        &["out.svg", "out.stl", "out.png"],
+    ),
+    ("band leaves.svg --along path:curve.svg --width 9mm --seed 3", &["out.svg", "out.stl", "out.png"]),
+    (
+        "band wave.svg --along line:60mm --width 10mm --components 1 --variety 0.5",
+        &["out.svg", "out.stl", "out.png"],
+    ),
+    (
+        "band lace.svg --along circle:65mm --width 14mm --enforce --min-feature 0.6mm --min-gap 0.5mm --view iso --pixels 400",
+        &["out.dxf", "out.3mf", "out.png"],
+    ),
+    (
+        "band leaves.svg --along line:90mm --width 9mm --enforce --min-feature 0.6mm --min-gap 0.5mm --view front --pixels 400",
+        &["out.dxf", "out.3mf", "out.png"],
+    ),
 ];
 
 /// Every file that a job writes, and its report without the times.
-fn results(room: &Room, job: &str, threads: &str) -> (Vec<Vec<u8>>, Value) {
-    let outputs = ["out.svg", "out.stl", "out.png"];
+fn results(room: &Room, (job, outputs): (&str, &[&str]), threads: &str) -> (Vec<Vec<u8>>, Value) {
     let named: String = outputs.iter().map(|name| format!(" -o {name}")).collect();
     let arguments = format!("{job} {named} --report out.json");
-    let finished = Finished::of(room.command(&arguments).env("RAYON_NUM_THREADS", threads));
+    let finished = Finished::of(room.command(&arguments).env("OPENWORK_THREADS", threads));
     assert_eq!(finished.code, 0, "{job}: {}", finished.stderr);
     let mut report = room.json("out.json");
     report.as_object_mut().unwrap().remove("times");
@@ -26,16 +40,16 @@ fn results(room: &Room, job: &str, threads: &str) -> (Vec<Vec<u8>>, Value) {
 }
 
 #[test]
-fn one_thread_two_threads_and_again() {
-    let room = Room::with(&["vine.svg", "leaves.svg", "wave.svg"]);
+fn one_thread_two_threads_three_and_again() {
+    let room = Room::with(&["vine.svg", "leaves.svg", "wave.svg", "lace.svg"]);
     room.draw("curve.svg", "<path d='M5 40 C40 -10 80 70 115 20' fill='none' stroke='black'/>");
     for job in JOBS {
         let first = results(&room, job, "1");
-        for threads in ["1", "2"] {
+        for threads in ["1", "2", "3"] {
             let again = results(&room, job, threads);
             let same: Vec<bool> = first.0.iter().zip(&again.0).map(|(a, b)| a == b).collect();
-            assert_eq!(same, [true; 3], "SVG, STL and PNG of {job} on {threads} thread(s)");
-            assert_eq!(first.1, again.1, "the report of {job} on {threads} thread(s)");
+            assert_eq!(same, [true; 3], "{:?} of {} on {threads} thread(s)", job.1, job.0);
+            assert_eq!(first.1, again.1, "the report of {} on {threads} thread(s)", job.0);
         }
     }
 }

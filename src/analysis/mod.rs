@@ -11,6 +11,7 @@ mod lettering;
 mod overlay;
 mod table;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use thiserror::Error;
 
@@ -24,7 +25,7 @@ pub const SCHEMA_VERSION: u32 = 1;
 
 /// What an exemplar consists of. Lengths are millimetres from the lower left corner of the ink's bounding box,
 /// x to the right and y up, rounded to a nanometre.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Analysis {
     /// [`SCHEMA_VERSION`].
     pub schema_version: u32,
@@ -60,7 +61,7 @@ pub struct Analysis {
 }
 
 /// The rule by which an exemplar was cut.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "rule", rename_all = "lowercase")]
 pub enum SlicingUsed {
     /// Between neighbouring events.
@@ -76,7 +77,7 @@ pub enum SlicingUsed {
 }
 
 /// An event of the Reeb graph.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct CriticalPointFound {
     /// begin, end, split or merge.
     pub event: &'static str,
@@ -91,7 +92,7 @@ pub struct CriticalPointFound {
 }
 
 /// A cut.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct CutFound {
     /// From the left end of the ink.
     pub x_mm: f64,
@@ -108,7 +109,7 @@ pub struct CutFound {
 }
 
 /// A cut that was left out.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct CutLeftOut {
     /// Where it would have been, from the left end of the ink.
     pub x_mm: f64,
@@ -117,7 +118,7 @@ pub struct CutLeftOut {
 }
 
 /// A piece.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct PieceFound {
     /// Its number, from 0, as in the sequences of other reports.
     pub index: usize,
@@ -137,7 +138,7 @@ pub struct PieceFound {
 }
 
 /// The descriptor of a piece.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct DescriptorFound {
     /// The component of each portal on the left, top to bottom.
     pub left: Vec<u16>,

@@ -6,13 +6,14 @@
 use std::any::TypeId;
 
 use clap::{Arg, ArgAction, Command, CommandFactory};
-use schemars::schema_for;
+use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::{Map, Value, json};
 
 use super::args::Arguments;
 use super::preset::name_of;
-use crate::job::{BandReport, ExtrudeReport, RectReport};
-use crate::verify::{CertificateReport, SvgReport};
+use crate::analysis::Analysis;
+use crate::job::{BandReport, ExtrudeReport, RectReport, View, Workshop};
+use crate::verify::{CertificateReport, CutReport, MeshReport, SvgReport};
 
 /// The schema, as a JSON text.
 pub(super) fn schema() -> String {
@@ -20,20 +21,42 @@ pub(super) fn schema() -> String {
     let commands = program.get_subcommands().filter(|command| command.get_arguments().any(is_option));
     let options: Map<String, Value> =
         commands.map(|command| (command.get_name().to_owned(), options_of(command))).collect();
+    // One for all reports, so that what they share is defined once, at the root that every reference begins at.
+    let generator = &mut SchemaGenerator::default();
     let reports = json!({
-        "band": schema_for!(BandReport),
-        "rect": schema_for!(RectReport),
-        "extrude": schema_for!(ExtrudeReport),
-        "verify-svg": schema_for!(SvgReport),
-        "verify-certificate": schema_for!(CertificateReport),
+        "band": report::<BandReport>(generator),
+        "rect": report::<RectReport>(generator),
+        "extrude": report::<ExtrudeReport>(generator),
+        "analyze": report::<Analysis>(generator),
+        "verify-svg": report::<SvgReport>(generator),
+        "verify-cut-lines": report::<CutReport>(generator),
+        "verify-mesh": report::<MeshReport>(generator),
+        "verify-certificate": report::<CertificateReport>(generator),
     });
     let schema = json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": format!("Openwork {}: options of each command, and reports", env!("CARGO_PKG_VERSION")),
         "options": options,
         "reports": reports,
+        "$defs": generator.take_definitions(true),
     });
     format!("{schema:#}\n")
+}
+
+/// What a report is like; what it refers to stays with the generator.
+fn report<T: JsonSchema>(generator: &mut SchemaGenerator) -> Value {
+    T::json_schema(generator).into()
+}
+
+/// Names that an option takes, by the word for that in a schema: all of them, or examples where files may add others.
+fn names(option: &str) -> Option<(&'static str, Value)> {
+    let workshop = Workshop::default();
+    match option {
+        "view" => Some(("enum", View::ALL.map(View::name).to_vec().into())),
+        "process" => Some(("examples", workshop.process_names().collect::<Vec<_>>().into())),
+        "material" => Some(("examples", workshop.material_names().collect::<Vec<_>>().into())),
+        _ => None,
+    }
 }
 
 /// Whether an argument says something of what is made, and not of the program.
@@ -73,13 +96,16 @@ fn option(arg: &Arg) -> Value {
             let names: Vec<&str> = values.iter().map(|value| value.get_name()).collect();
             value.insert("enum".into(), names.into())
         }
-        _ if is_of(&[TypeId::of::<std::path::PathBuf>(), TypeId::of::<String>()]) => {
+        _ if is_of(&[TypeId::of::<std::path::PathBuf>(), TypeId::of::<String>(), TypeId::of::<View>()]) => {
             value.insert("type".into(), "string".into())
         }
         // A length is a text with a unit or a number; a size of memory and a count are whole or a text.
         _ if is_of(&whole) => value.insert("type".into(), json!(["integer", "string"])),
         _ => value.insert("type".into(), json!(["number", "string"])),
     };
+    if let Some((word, names)) = names(name_of(arg)) {
+        value.insert(word.into(), names);
+    }
     match arg.get_action() {
         ArgAction::Append => {
             schema.insert("type".into(), "array".into());
@@ -115,6 +141,43 @@ mod tests {
         }
     }
 
+    /// Every reference in a schema.
+    fn references<'a>(schema: &'a Value, found: &mut Vec<&'a str>) {
+        match schema {
+            Value::Object(object) => {
+                found.extend(object.get("$ref").and_then(Value::as_str));
+                object.values().for_each(|value| references(value, found));
+            }
+            Value::Array(array) => array.iter().for_each(|value| references(value, found)),
+            _ => {}
+        }
+    }
+
+    #[test]
+    fn every_reference_leads_to_a_definition() {
+        let schema: Value = serde_json::from_str(&schema()).unwrap();
+        let mut found = Vec::new();
+        references(&schema, &mut found);
+        assert!(found.len() > 20, "{found:?}");
+        for reference in found {
+            let pointer = reference.strip_prefix('#').expect("all is in one document");
+            assert!(schema.pointer(pointer).is_some_and(Value::is_object), "{reference} leads nowhere");
+        }
+    }
+
+    #[test]
+    fn names_are_told() {
+        let schema: Value = serde_json::from_str(&schema()).unwrap();
+        let band = &schema["options"]["band"]["properties"];
+        assert_eq!(
+            (&band["view"]["type"], &band["view"]["enum"]),
+            (&json!("string"), &json!(["top", "iso", "front"]))
+        );
+        let has =
+            |option: &str, name: &str| band[option]["examples"].as_array().unwrap().contains(&json!(name));
+        assert!(has("process", "fdm-0.4") && has("material", "birch-ply"));
+    }
+
     #[test]
     fn reports_are_described_as_they_are_written() {
         let schema: Value = serde_json::from_str(&schema()).unwrap();
@@ -123,5 +186,7 @@ mod tests {
             assert_eq!(properties["components"]["type"], "integer", "{report}");
             assert!(properties["holes"]["description"].is_string(), "{report}");
         }
+        let has = |report: &str, field: &str| schema["reports"][report]["properties"][field].is_object();
+        assert!(has("analyze", "pieces") && has("verify-cut-lines", "pierces") && has("verify-mesh", "unit"));
     }
 }

@@ -2,9 +2,9 @@
 //!
 //! From each vertex on, the farthest other is sought that one arc, or two with a common tangent (a biarc, Bolton
 //! 1975), reach with the run's tangents at both ends. Acceptance is that of the cubics: over each edge, the part of
-//! the arc that belongs to it lies in the edge's capsule, the points within the tolerance of it. A capsule is convex
-//! and smooth, so the farthest point of an arc from it is an end of the part, or where the arc runs along the edge;
-//! these few points prove it for all. The parts go on from vertex to vertex, so the arcs pass every point of the run
+//! the arc that belongs to it lies in the edge's capsule, the points within the tolerance of it. The farthest point
+//! of an arc from an edge is an end of the part, or where the arc runs along the edge, or where its radius points away from an
+//! end of the edge; these few points prove it for all. The parts go on from vertex to vertex, so the arcs pass every point of the run
 //! that closely too. What is checked is what stands in the file, rounded.
 
 use glam::DVec2;
@@ -217,8 +217,9 @@ impl Path<'_> {
             let (t, u) = (if i == first { t } else { 0.0 }, if i == last { u } else { 1.0 });
             farthest = farthest.max(off(point(arc, t))).max(off(point(arc, u)));
             if arc.bulge != 0.0 {
-                let radius = arc.from - arc.centre();
-                for side in [normal, -normal] {
+                let centre = arc.centre();
+                let radius = arc.from - centre;
+                for side in [normal, -normal, centre - edge[0], centre - edge[1]] {
                     let s = radius.angle_to(side) / arc.turn();
                     if (t..=u).contains(&s) {
                         farthest = farthest.max(off(point(arc, s)));
@@ -327,6 +328,23 @@ mod tests {
             let kink = ends[i][1].angle_to(ends[(i + 1) % ends.len()][0]).abs();
             assert!(kink < 3.0 * KINK, "{kink}");
         }
+    }
+
+    #[test]
+    fn an_arc_that_bulges_past_the_end_of_an_edge_is_measured_there() {
+        // Its ends are level with the end of the edge, one radius below the centre, and within the tolerance; its top is not.
+        let (tolerance, turn) = (1.0f64, 149.8f64.to_radians());
+        let radius = 0.62 * tolerance;
+        let at = |angle: f64| radius * DVec2::from_angle(angle);
+        let arc = Arc { from: at(-0.5 * turn), to: at(0.5 * turn), bulge: (0.25 * turn).tan() };
+        assert!(arc.centre().length() < 1e-9);
+        let edge = [DVec2::new(-5.0, 0.2), DVec2::new(-radius, 0.0)];
+        let path = Path { arcs: &[arc] };
+        let sampled = (0..=1000).map(|k| arc.at(f64::from(k) / 1000.0));
+        let sampled = sampled.map(|p| distance_to_edge(p, edge[0], edge[1])).fold(0.0, f64::max);
+        let found = path.farthest(0.0, 1.0, &edge);
+        assert!(sampled > 1.2 * tolerance && distance_to_edge(arc.from, edge[0], edge[1]) < tolerance);
+        assert!(found > sampled - 1e-9 && found < sampled + 1e-3, "{found} is not {sampled}");
     }
 
     #[test]

@@ -10,6 +10,7 @@
 use glam::DVec2;
 use thiserror::Error;
 
+use super::limbs::thin_limb;
 use crate::planar::{Contour, FillRule, Grid, GridError, GridPoint, Part, Region, RegionError};
 
 /// Room between the ink and the frame that bounds the gaps, in kerfs: less, and the frame would be in the way.
@@ -83,7 +84,8 @@ pub fn check_kerf(kerf_mm: f64) -> Result<(), KerfError> {
 ///
 /// # Errors
 /// [`KerfError::Gap`] and [`KerfError::Feature`] name the first place that is narrower than the kerf: where the counts
-/// would change if gaps, or ink, lost half of it on either side. Sharp tips and the ends of notches are none.
+/// would change if gaps, or ink, lost half of it on either side, or where ink much longer than the kerf is wide would burn
+/// away. Sharp tips and the ends of notches are none.
 pub fn compensated(region: &Region, kerf_mm: f64, chord_mm: f64) -> Result<Region, KerfError> {
     check_kerf(kerf_mm)?;
     let (low, high) = region.bounds_mm().ok_or(KerfError::Empty)?;
@@ -98,6 +100,10 @@ pub fn compensated(region: &Region, kerf_mm: f64, chord_mm: f64) -> Result<Regio
     };
     if eroded(&ink, radius_mm, chord_mm).is_none() {
         let (position_mm, width_mm) = first_loss(&ink, radius_mm, chord_mm);
+        return Err(KerfError::Feature { position_mm, width_mm, kerf_mm });
+    }
+    if let Some(limb) = thin_limb(&ink, kerf_mm, chord_mm) {
+        let (position_mm, width_mm) = (limb.position_mm, limb.width_mm);
         return Err(KerfError::Feature { position_mm, width_mm, kerf_mm });
     }
     let frame = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];

@@ -24,6 +24,7 @@ mod enforce;
 mod in_box;
 mod inset;
 mod kerf;
+mod limbs;
 mod limit;
 mod material;
 mod process;

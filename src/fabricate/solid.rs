@@ -90,7 +90,7 @@ impl Solid {
     }
 
     /// The corners of each facet, in the order of [`Self::triangles`].
-    pub fn facets(&self) -> impl ExactSizeIterator<Item = [[f32; 3]; 3]> + '_ {
+    pub fn facets(&self) -> impl ExactSizeIterator<Item = [[f32; 3]; 3]> + Clone + '_ {
         self.triangles.iter().map(|t| t.map(|i| self.vertices[i as usize]))
     }
 

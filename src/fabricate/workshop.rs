@@ -145,6 +145,16 @@ impl Workshop {
         })
     }
 
+    /// The names of all processes, in alphabetical order.
+    pub fn process_names(&self) -> impl Iterator<Item = &str> {
+        self.processes.keys().map(String::as_str)
+    }
+
+    /// The names of all materials, in alphabetical order.
+    pub fn material_names(&self) -> impl Iterator<Item = &str> {
+        self.materials.keys().map(String::as_str)
+    }
+
     /// The process of this name.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 //!
 //! The drawing lies on the part's own page, the lower left corners of both together, so that it can be drawn over the
 //! part's SVG. Its ink is read like an exemplar's; what is engraved are the outlines of it, closed and each once, as the
-//! part itself is cut. All of it must lie on material that is kept. Excluded: filling areas by hatching them, which the
+//! part itself is cut. All of it must lie on material that is kept, and none along a cut. Excluded: filling areas by hatching them, which the
 //! programs of lasers do.
 
 use std::path::Path;
@@ -13,7 +13,7 @@ use super::error::JobError;
 use super::report::InputReport;
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
 use crate::fabricate::FabricateError;
-use crate::planar::{FillRule, Grid, GridPoint, Region};
+use crate::planar::{EdgeIndex, FillRule, Grid, GridPoint, Region};
 
 /// What is engraved, and where it is from.
 pub(super) struct Engraving {
@@ -37,7 +37,8 @@ impl Engraving {
     /// `chord_mm`, and not onto `fallen`, which is a part of it.
     ///
     /// # Errors
-    /// [`JobError::Option`] names a place on the part's page where there is no material.
+    /// [`JobError::Option`] names a place on the part's page where there is no material, or where it is cut along the same
+    /// line.
     pub(super) fn on(
         &self,
         kept: &Region,
@@ -70,9 +71,23 @@ impl Engraving {
             path.reverse();
             missing.push(path);
         }
-        match Region::fill(grid, &missing, FillRule::Positive).contours().next() {
+        if let Some(beyond) = Region::fill(grid, &missing, FillRule::Positive).contours().next() {
+            return Err(self.misses(grid.to_mm(beyond.points()[0]) - shift));
+        }
+        match along_cuts(&engraved, kept, chord_mm) {
             None => Ok(engraved),
-            Some(beyond) => Err(self.misses(grid.to_mm(beyond.points()[0]) - shift)),
+            Some(place) => Err(self.burns(place - shift)),
+        }
+    }
+
+    fn burns(&self, place: DVec2) -> JobError {
+        JobError::Option {
+            option: "--engrave",
+            found: format!(
+                "{} is engraved along a cut, at ({:.2}, {:.2}) mm, so that the edge burns",
+                self.file, place.x, place.y
+            ),
+            wanted: "end its ink a little inside of the part, or draw it as a hole of the part".to_owned(),
         }
     }
 
@@ -86,6 +101,18 @@ impl Engraving {
             wanted: "draw it over the part, from the lower left corner of the part's own page".to_owned(),
         }
     }
+}
+
+/// Where an edge of `engraved` runs along the contours of `kept`, nowhere farther from them than `chord_mm`; corners may
+/// touch them.
+fn along_cuts(engraved: &Region, kept: &Region, chord_mm: f64) -> Option<DVec2> {
+    let cuts = EdgeIndex::new(kept);
+    let is_near = |p: DVec2| cuts.nearest_within(p, chord_mm).is_some();
+    let edges = engraved.contours().flat_map(|contour| contour.edges());
+    let mut edges = edges.map(|(a, b)| [engraved.grid().to_mm(a), engraved.grid().to_mm(b)]);
+    let is_along =
+        |&[a, b]: &[DVec2; 2]| a.distance(b) > chord_mm && [a, a.midpoint(b), b].into_iter().all(is_near);
+    edges.find(is_along).map(|[a, b]| a.midpoint(b))
 }
 
 #[cfg(test)]
@@ -113,6 +140,24 @@ mod tests {
         let (low, high) = engraved.bounds_mm().unwrap();
         assert!(low.distance(DVec2::new(6.0, 7.0)) < 1e-6 && high.distance(DVec2::new(16.0, 27.0)) < 1e-6);
         assert_eq!((engraved.components(), engraved.holes()), (1, 1));
+    }
+
+    #[test]
+    fn what_is_engraved_along_a_cut_is_refused_with_its_place() {
+        let frame = region(&FRAME);
+        let on = |of: &[(i64, i64, i64, i64)]| {
+            engraving(of).on(&frame, None, DVec2::new(1.0, 1.0), frame.grid(), 0.01)
+        };
+        // The frame itself, and a box at the left side of its hole, which is at x = 19 on the part's own page.
+        for of in [&[(4, 4, 50, 30), (19, 9, 20, 10)][..], &[(15, 12, 4, 2)]] {
+            let error = on(of).unwrap_err().to_string();
+            assert!(
+                error.contains("name.svg is engraved along a cut, at (") && error.contains("; end"),
+                "{error}"
+            );
+        }
+        assert!(on(&[(15, 12, 4, 2)]).unwrap_err().to_string().contains("at (19.00, 13.00) mm"));
+        assert!(on(&[(15, 12, 3, 2)]).is_ok());
     }
 
     #[test]

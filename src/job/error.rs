@@ -112,6 +112,9 @@ pub enum JobError {
     },
 }
 
+/// What is said of a file that is not like its plan.
+pub(super) const OURS: &str = "; this is a bug of ours, please report it";
+
 /// How a mapped outline differs from the plan.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum OutlineFault {

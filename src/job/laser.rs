@@ -1,8 +1,8 @@
 //! Files for a laser or a waterjet: the part as cut lines, with kerf, on a plate, and what cutting takes.
 //!
 //! The contours are moved by half of the kerf and fitted with lines and arcs. Each file is read again: its lines must
-//! be sound, leave as many components and holes as are wanted, and do so too when the kerf is taken off again; and what is
-//! left keeps the widths that were asked for.
+//! be sound and those that were planned, leave as many components and holes as are wanted, and do so too when the kerf is
+//! taken off again; and what is left keeps the widths that were asked for.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::engrave::Engraving;
-use super::error::JobError;
+use super::error::{JobError, OURS};
 use super::extrude::name;
 use super::making;
 use super::output::{Format, Output, Pending};
@@ -166,6 +166,8 @@ pub(super) struct Cutting {
     page_mm: DVec2,
     tolerances: Tolerances,
     description: String,
+    /// What the cuts bound, on the page of the files.
+    cut: Region,
     /// What is kept, and what of it falls out.
     kept: Region,
     fallen: Option<Region>,
@@ -225,8 +227,13 @@ impl Cutting {
         let by = GridPoint::new(margin(low.x), margin(low.y));
         let corner = cut.grid().to_mm(by);
         let page_mm = page_mm.max(high + curve_chord_mm) + corner;
-        let layers = [(Layer::Engrave, engraved.clone()), (Layer::Cut, Some(cut)), (Layer::Sheet, plate)];
-        let layers = layers.map(|(layer, region)| (layer, region.map(|region| region.shifted(by))));
+        let cut = cut.shifted(by);
+        let on_page = |region: Option<&Region>| region.map(|region| region.shifted(by));
+        let layers = [
+            (Layer::Engrave, on_page(engraved.as_ref())),
+            (Layer::Cut, Some(cut.clone())),
+            (Layer::Sheet, on_page(plate.as_ref())),
+        ];
         let layers: Vec<_> =
             layers.iter().filter_map(|(layer, region)| Some((*layer, region.as_ref()?))).collect();
         let lines = CutLines::new(&layers, options.curves, curve_chord_mm)?.with_colours(options.colours);
@@ -249,6 +256,7 @@ impl Cutting {
             page_mm,
             tolerances,
             description,
+            cut,
             kept,
             fallen,
             sign,
@@ -339,6 +347,13 @@ impl Cutting {
             let count = found.open_engraved.len();
             return Err(mismatch(Mismatch::Cuts { count, first: first.clone() }));
         }
+        // A bug of ours, if not: the lines are the plan's within the chord error.
+        let within_mm = chord_mm * (1.0 + READ_PART);
+        found.is_like(&self.cut, within_mm).map_err(|unlike| JobError::Mismatch {
+            file: file(),
+            mismatch: unlike.into(),
+            remedy: OURS.to_owned(),
+        })?;
         let left = match self.options.kerf_mm {
             Some(kerf_mm) => {
                 // What the beam leaves of the file.

@@ -5,14 +5,17 @@ use std::borrow::Cow;
 use std::collections::VecDeque;
 use std::path::Path;
 
-use super::error::JobError;
+use super::error::{JobError, OURS};
 use super::extrude::name;
 use super::output::{Format, Output, Pending};
 use super::stage::{Clock, Stage};
 use crate::export::{self, MeshDocument};
 use crate::fabricate::{self, Bed, Counts, Profile, Solid};
 use crate::planar::Region;
-use crate::verify::{self, Expected, MeshReport};
+use crate::verify::{self, Expected, MeshReport, Mismatch};
+
+/// The unit that a 3MF must name: many programs ask, or guess, where none is named.
+const UNIT: &str = "millimeter";
 
 /// How a solid is made, beyond its thickness.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -159,7 +162,7 @@ impl Meshes {
         for output in outputs {
             let bytes = clock.time(Stage::Stl, || mesh(output.format(), &solid, document))?;
             let item = Pending::new(output.target(), bytes)?;
-            let (bytes, found) = clock.time(Stage::Verify, || check_mesh(output, &item, expected))?;
+            let (bytes, found) = clock.time(Stage::Verify, || check_mesh(output, &item, &solid, expected))?;
             meshes.read_mm3 = Some(found.volume_mm3);
             meshes.files.push_back(MeshFile { item, bytes, found });
         }
@@ -196,10 +199,11 @@ impl Meshes {
     }
 }
 
-/// Reads a written solid again and holds it against the plan.
+/// Reads a written solid again and holds it against the plan: what was asked for, and the solid itself.
 fn check_mesh(
     output: &Output,
     pending: &Pending,
+    solid: &Solid,
     expected: &Expected,
 ) -> Result<(Vec<u8>, MeshReport), JobError> {
     let bytes = pending.read_again()?;
@@ -210,10 +214,13 @@ fn check_mesh(
     };
     let file = || name(output.target());
     let report = read.map_err(|error| JobError::Unjudged { file: file(), error })?;
-    report.check(expected).map_err(|mismatch| JobError::Mismatch {
-        file: file(),
-        mismatch,
-        remedy: String::new(),
-    })?;
+    let mismatch =
+        |mismatch, remedy: &str| JobError::Mismatch { file: file(), mismatch, remedy: remedy.to_owned() };
+    report.check(expected).map_err(|found| mismatch(found, ""))?;
+    if output.format() == Format::Threemf && report.unit != Some(UNIT) {
+        let found = Mismatch::Unit { found: report.unit, wanted: UNIT };
+        return Err(mismatch(found, OURS));
+    }
+    report.is_like(solid.facets()).map_err(|found| mismatch(found.into(), OURS))?;
     Ok((bytes, report))
 }

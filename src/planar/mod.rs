@@ -20,6 +20,7 @@ mod overlay;
 mod region;
 mod sets;
 mod split;
+mod threads;
 mod tolerances;
 mod touch;
 
@@ -31,4 +32,5 @@ pub use index::{EdgeIndex, IndexedEdge};
 pub use overlay::{FillRule, boundaries};
 pub use region::{Fault, Part, Region, RegionError};
 pub use sets::Sets;
+pub use threads::threads;
 pub use tolerances::{Tolerances, TolerancesError};

@@ -6,6 +6,7 @@ use thiserror::Error;
 
 use super::cutlines::{CutFault, CutReport};
 use super::endure::{endures_dilation, endures_erosion};
+use super::likeness::Unlike;
 use super::narrowest::Narrowest;
 use super::shells::{MeshFault, MeshReport};
 use super::svg::SvgReport;
@@ -115,6 +116,23 @@ pub enum Mismatch {
         /// The first.
         first: MeshFault,
     },
+    /// Another shape than the one that was planned.
+    #[error("the file does not have the shape that it was made from: {0}")]
+    Unlike(Box<Unlike>),
+    /// A model that leaves its unit to whoever reads it, or has another.
+    #[error("the model is in {}; it must say that it is in {wanted}", found.unwrap_or("a unit that it does not say"))]
+    Unit {
+        /// In the file.
+        found: Option<&'static str>,
+        /// What our own are in.
+        wanted: &'static str,
+    },
+}
+
+impl From<Unlike> for Mismatch {
+    fn from(unlike: Unlike) -> Self {
+        Self::Unlike(Box::new(unlike))
+    }
 }
 
 fn place(narrowest: &Option<Narrowest>) -> String {

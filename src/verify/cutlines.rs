@@ -4,7 +4,7 @@
 //! closed, or closed by those that go on where it ends; nothing cut twice, as that burns; no crossings; and inner
 //! contours before outer ones, as a part that is loose moves. [`super::read_dxf`] and [`super::read_cut_svg`] hand
 //! their paths over to be judged here. Layers named `ENGRAVE` and `SHEET` are measured but cut nothing; what is engraved has
-//! to be engraved once, too, and what of it is open is told, as lines of letters may be. Excluded: power, speed and kerf.
+//! to be engraved once, too, and beside the cuts, and what of it is open is told, as lines of letters may be. Excluded: power, speed and kerf.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -111,6 +111,15 @@ pub enum CutFault {
         /// How long it is.
         length_mm: f64,
     },
+    /// A line is engraved along a cut, so that the edge burns.
+    EngravedCut {
+        /// The middle of the stretch.
+        #[serde(serialize_with = "super::json::point")]
+        #[schemars(with = "[f64; 2]")]
+        position_mm: DVec2,
+        /// How long it is.
+        length_mm: f64,
+    },
     /// Contours cross or touch.
     Crossing {
         /// Where.
@@ -141,6 +150,10 @@ impl fmt::Display for CutFault {
             Self::Doubled { is_engraved, position_mm, length_mm } => {
                 let done = if *is_engraved { "engraved" } else { "cut" };
                 write!(f, "{length_mm:.3} mm are {done} twice: ")?;
+                ("lines run along each other", position_mm)
+            }
+            Self::EngravedCut { position_mm, length_mm } => {
+                write!(f, "{length_mm:.3} mm are engraved and cut: ")?;
                 ("lines run along each other", position_mm)
             }
             Self::Crossing { position_mm } => ("contours cross or touch", position_mm),
@@ -178,10 +191,9 @@ pub(super) fn judge(
     let (paths, uncut): (Vec<_>, Vec<_>) = paths.into_iter().partition(|path| is_cut(&path.layer));
     let grid = grid(&paths)?;
     let cut_length_mm = paths.iter().flat_map(|path| &path.stretches).map(Stretch::length_mm).sum();
-    let mut faults = twice(&paths, false);
     let engraved = uncut.into_iter().filter(|path| path.layer.eq_ignore_ascii_case(ENGRAVED));
     let engraved: Vec<CutPath> = engraved.collect();
-    faults.extend(twice(&engraved, true));
+    let mut faults = twice(&paths, &engraved);
     let mut open_engraved = Vec::new();
     rings(engraved, chord_mm, &mut open_engraved);
     let rings = rings(paths, chord_mm, &mut faults);
@@ -219,11 +231,20 @@ pub(super) fn judge(
     })
 }
 
-/// The lines that run along each other.
-fn twice(paths: &[CutPath], is_engraved: bool) -> Vec<CutFault> {
-    let stretches: Vec<&[Stretch]> = paths.iter().map(|path| path.stretches.as_slice()).collect();
-    let fault = |(position_mm, length_mm)| CutFault::Doubled { is_engraved, position_mm, length_mm };
-    doubled(&stretches).into_iter().map(fault).collect()
+/// The lines that run along each other: first those that are cut twice, then what is engraved twice or along a cut.
+fn twice(cut: &[CutPath], engraved: &[CutPath]) -> Vec<CutFault> {
+    let paths = cut.iter().chain(engraved);
+    let stretches: Vec<&[Stretch]> = paths.map(|path| path.stretches.as_slice()).collect();
+    let fault = |(pair, position_mm, length_mm): ([usize; 2], _, _)| {
+        let [is_engraved, and_other] = pair.map(|path| path >= cut.len());
+        match is_engraved == and_other {
+            true => CutFault::Doubled { is_engraved, position_mm, length_mm },
+            false => CutFault::EngravedCut { position_mm, length_mm },
+        }
+    };
+    let mut faults: Vec<CutFault> = doubled(&stretches).into_iter().map(fault).collect();
+    faults.sort_by_key(|fault| !matches!(fault, CutFault::Doubled { is_engraved: false, .. }));
+    faults
 }
 
 fn is_cut(layer: &str) -> bool {

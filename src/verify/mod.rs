@@ -9,6 +9,7 @@
 //! minimum feature and after dilating by half of the minimum gap ([`endures_erosion`],
 //! [`endures_dilation`]); where they would change first is measured by [`widths`].
 //!
+//! Whoever has the plan of a file can hold it against that too, as counts know nothing of size and place ([`Unlike`]).
 //! [`replay_certificate`] adds the sequence of a report up again, join by join, and holds it against the file.
 //!
 //! Excluded: repair. What cannot be judged (text, images, masks, filters, clip paths) is an error that says
@@ -28,6 +29,7 @@ mod dxf;
 mod endure;
 mod error;
 mod json;
+mod likeness;
 mod narrowest;
 mod obj;
 mod path_data;
@@ -52,6 +54,7 @@ pub use cutlines::{CutFault, CutLayer, CutReport};
 pub use dxf::read_dxf;
 pub use endure::{endures_dilation, endures_erosion};
 pub use error::VerifyError;
+pub use likeness::{Extent, Unlike};
 pub use narrowest::{NarrowPlaces, Narrowest, Widths, min_feature, min_gap, narrow_places, widths};
 pub use obj::read_obj;
 pub use shells::{MeshFault, MeshFaultKind, MeshReport, Shell};

@@ -14,6 +14,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::crossings::crossings;
+use super::likeness::Facets;
 use crate::planar::Sets;
 
 /// Faults that a report prints for people; the list itself is complete.
@@ -41,8 +42,13 @@ pub struct MeshReport {
     pub volume_mm3: f64,
     /// The smallest and largest coordinates; `None` without facets.
     pub bounds_mm: Option<([f64; 3], [f64; 3])>,
+    /// The unit that the file says it is in; `None` when it says none, or its format has none.
+    pub unit: Option<&'static str>,
     /// Why this is not the boundary of a solid; empty when it is.
     pub faults: Vec<MeshFault>,
+    /// What facets there are.
+    #[serde(skip)]
+    pub(super) facets: Facets,
 }
 
 /// One connected surface.
@@ -163,8 +169,10 @@ pub(super) fn survey(facets: &[Facet]) -> MeshReport {
         genus: shells.iter().filter_map(|s| s.genus).sum(),
         volume_mm3: shells.iter().map(|s| s.volume_mm3).sum(),
         bounds_mm: corner(DVec3::min).zip(corner(DVec3::max)).map(|(a, b)| (a.to_array(), b.to_array())),
+        unit: None,
         shells,
         faults,
+        facets: Facets::of(facets.iter().map(|facet| facet.corners)),
     }
 }
 

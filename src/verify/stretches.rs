@@ -123,9 +123,9 @@ impl Stretch {
     }
 }
 
-/// The stretches that are cut twice: the middle of each, and its length. Neighbours within a path are not compared:
+/// The stretches of two paths that make the same cut: the numbers of the paths, the lower first, the middle of each, and its length. Neighbours within a path are not compared:
 /// where a path turns back on itself it has no area there.
-pub(super) fn doubled(paths: &[&[Stretch]]) -> Vec<(DVec2, f64)> {
+pub(super) fn doubled(paths: &[&[Stretch]]) -> Vec<([usize; 2], DVec2, f64)> {
     let margin = DVec2::splat(SAME_MM);
     let envelope = |stretch: &Stretch| {
         let (low, high) = stretch.bounds();
@@ -153,7 +153,8 @@ pub(super) fn doubled(paths: &[&[Stretch]]) -> Vec<(DVec2, f64)> {
                 if i == j && follows(m) && path.len() > 2 {
                     continue;
                 }
-                found.extend(stretch.shared_with(&paths[j][m]));
+                let shared = stretch.shared_with(&paths[j][m]);
+                found.extend(shared.map(|(middle, length_mm)| ([i, j], middle, length_mm)));
             }
         }
     }
@@ -180,7 +181,7 @@ mod tests {
         assert_eq!(doubled(&[&square]), []);
         let beside = [line((12.0, 0.0), (4.0, 0.0)), line((4.0, 1e-3), (12.0, 1e-3))];
         let found = doubled(&[&square, &beside]);
-        assert_eq!(found, [(DVec2::new(7.0, 0.0), 6.0)]);
+        assert_eq!(found, [([0, 1], DVec2::new(7.0, 0.0), 6.0)]);
         assert_eq!(doubled(&[&square, &square]).len(), 4);
         assert_eq!(doubled(&[&[line((0.0, 0.0), (5.0, 5.0))], &[line((0.0, 5.0), (5.0, 0.0))]]), []);
     }
@@ -188,7 +189,7 @@ mod tests {
     #[test]
     fn arcs_of_one_circle_are_found_where_they_overlap() {
         let found = doubled(&[&[arc(10.0, 0.0, 2.0)], &[arc(10.0, 3.0, -2.0)]]);
-        let [(at, length_mm)] = found[..] else { panic!("{found:?}") };
+        let [(_, at, length_mm)] = found[..] else { panic!("{found:?}") };
         assert!((length_mm - 10.0).abs() < 1e-6 && at.distance(10.0 * DVec2::from_angle(1.5)) < 1e-6);
         assert_eq!(doubled(&[&[arc(10.0, 0.0, 2.0)], &[arc(10.0, 2.0, 2.0)]]), [], "they only meet");
         assert_eq!(doubled(&[&[arc(10.0, 0.0, 2.0)], &[arc(10.001, 0.0, 2.0)]]), []);

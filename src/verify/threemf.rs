@@ -25,6 +25,15 @@ const MAX_FACETS: usize = 20_000_000;
 /// The relationship that leads to the model.
 const MODEL_RELATIONSHIP: &str = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
 const RELATIONSHIPS: &str = "_rels/.rels";
+/// The units of a model, in millimetres.
+const UNITS: [(&str, f64); 6] = [
+    ("micron", 0.001),
+    ("millimeter", 1.0),
+    ("centimeter", 10.0),
+    ("inch", 25.4),
+    ("foot", 304.8),
+    ("meter", 1000.0),
+];
 
 /// Reads a 3MF and counts the shells of all that it builds, and their genus.
 ///
@@ -39,10 +48,10 @@ pub fn read_threemf(bytes: &[u8]) -> Result<MeshReport, VerifyError> {
     let relationships = part(&mut archive, RELATIONSHIPS)?;
     let path = model_path(&relationships)?;
     let text = part(&mut archive, &path)?;
-    let facets = Model::facets_of(&text)?;
+    let (facets, unit) = Model::facets_of(&text)?;
     match facets.is_empty() {
         true => Err(VerifyError::NoFacets),
-        false => Ok(survey(&facets)),
+        false => Ok(MeshReport { unit, ..survey(&facets) }),
     }
 }
 
@@ -111,7 +120,8 @@ struct Model<'a, 'input> {
 }
 
 impl<'a, 'input> Model<'a, 'input> {
-    fn facets_of(text: &str) -> Result<Vec<Facet>, VerifyError> {
+    /// The facets in millimetres, and the unit that the model says it is in.
+    fn facets_of(text: &str) -> Result<(Vec<Facet>, Option<&'static str>), VerifyError> {
         let document = parse(text)?;
         let root = document.root_element();
         let mut model = Model { document: &document, numbers: FxHashMap::default(), objects: Vec::new() };
@@ -126,7 +136,9 @@ impl<'a, 'input> Model<'a, 'input> {
             );
             return Err(model.error(root, message));
         }
-        let unit_mm = model.unit_mm(root)?;
+        let unit = model.unit(root)?;
+        // What says nothing is in millimetres (3MF core specification, 3.4).
+        let unit_mm = unit.map_or(1.0, |(_, unit_mm)| unit_mm);
         let scale = (unit_mm != 1.0).then(|| DAffine3::from_scale(DVec3::splat(unit_mm)));
         for object in named(root, "resources").flat_map(|node| named(node, "object")) {
             model.add(object)?;
@@ -136,7 +148,7 @@ impl<'a, 'input> Model<'a, 'input> {
             let placed = model.placed(item)?;
             model.gather(item, &placed, scale, &mut facets)?;
         }
-        Ok(facets)
+        Ok((facets, unit.map(|(name, _)| name)))
     }
 
     fn error(&self, at: Node<'_, '_>, message: String) -> VerifyError {
@@ -144,16 +156,12 @@ impl<'a, 'input> Model<'a, 'input> {
         VerifyError::Mesh { kind: "3MF model", line, message }
     }
 
-    fn unit_mm(&self, root: Node<'_, '_>) -> Result<f64, VerifyError> {
-        Ok(match root.attribute("unit").unwrap_or("millimeter") {
-            "micron" => 0.001,
-            "millimeter" => 1.0,
-            "centimeter" => 10.0,
-            "inch" => 25.4,
-            "foot" => 304.8,
-            "meter" => 1000.0,
-            other => return Err(self.error(root, format!("the unit {other:?} is none that a 3MF can have"))),
-        })
+    /// The unit that the model names, and how many millimetres it is.
+    fn unit(&self, root: Node<'_, '_>) -> Result<Option<(&'static str, f64)>, VerifyError> {
+        let Some(name) = root.attribute("unit") else { return Ok(None) };
+        let known = UNITS.into_iter().find(|(known, _)| *known == name);
+        let unknown = || self.error(root, format!("the unit {name:?} is none that a 3MF can have"));
+        known.map(Some).ok_or_else(unknown)
     }
 
     fn add(&mut self, node: Node<'a, 'input>) -> Result<(), VerifyError> {

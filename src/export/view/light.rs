@@ -5,13 +5,13 @@
 //! soft shade in corners and under a part that tells a person what lies above what. Shadows of the lamp have an edge to
 //! be seen; the sky has none, so it is looked for at fewer places and in coarser pictures.
 
-use std::num::NonZero;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::{DVec2, DVec3};
 
 use super::camera::{Camera, Raster};
 use super::depth::draw;
+use crate::planar::threads;
 
 /// Directions of the sky.
 const SKY: usize = 24;
@@ -63,7 +63,7 @@ fn falling(place: &Place, directions: &[DVec3], lit: Lit) -> f32 {
 
 /// From which of the directions light reaches each place; the same whatever the number of threads that look for it.
 fn lit(triangles: &[[DVec3; 3]], places: &[Place], directions: &[DVec3], cells: usize) -> Vec<Lit> {
-    let threads = std::thread::available_parallelism().map_or(1, NonZero::get).min(directions.len());
+    let threads = threads().min(directions.len());
     let next = AtomicUsize::new(0);
     let look = || lit_from(triangles, places, directions, cells, &next);
     std::thread::scope(|scope| {

@@ -8,12 +8,10 @@
 //!
 //! Excluded: what is too narrow ([`super::keep`]), and what becomes of it ([`super::grow`]).
 
-use std::num::NonZero;
-
 use glam::DVec2;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
-use crate::planar::{EdgeIndex, IndexedEdge, Region, Sets};
+use crate::planar::{EdgeIndex, IndexedEdge, Region, Sets, threads};
 
 /// A middle of an edge is no better than half of its length, and good from this part on.
 const CENTRED: f64 = 0.45;
@@ -110,8 +108,7 @@ pub(super) fn cores(region: &Region, index: &EdgeIndex, fineness: &Fineness) -> 
 
 /// What `work` gives for each of `items`, in their order.
 fn on_all_cores<T: Sync, U: Send>(items: &[T], work: impl Fn(&T) -> U + Sync) -> Vec<U> {
-    let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
-    let share = items.len().div_ceil(threads).max(LEAST_SHARE);
+    let share = items.len().div_ceil(threads()).max(LEAST_SHARE);
     let work = |items: &[T]| items.iter().map(&work).collect::<Vec<U>>();
     std::thread::scope(|scope| {
         let work = &work;
