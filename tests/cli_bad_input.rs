@@ -233,7 +233,11 @@ fn solids_that_no_printer_makes() {
         2,
         &["100.00 x 20.00 x 3.00 mm", "does not fit a bed of 50 x 50 mm", "larger bed"],
     );
-    refuses("--bed 220x220x2mm", 2, &["does not fit a bed of 220 x 220 x 2 mm"]);
+    refuses(
+        "--bed 220x220x2mm",
+        2,
+        &["3.00 mm high, and the bed of 220 x 220 x 2 mm has room for 2 mm", "thinner"],
+    );
     refuses("--bed 220", 2, &["--bed", "give a bed as 220x220mm"]);
     refuses("--place", 2, &["--bed"]);
 }
