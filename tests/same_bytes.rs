@@ -4,6 +4,8 @@
 mod common;
 
 use common::{Finished, Room};
+use openwork::domain::CurveSpec;
+use openwork::job::{BandBuilder, Output};
 use serde_json::Value;
 
 /// Ways of using the search and the geometry: a ring, an open path with jumps, a band with variety, and two that are mended,
@@ -91,4 +93,25 @@ fn seeds_differ_and_none_is_better_than_the_optimum() {
         let different = (0..seeded.len()).filter(|&i| is_new(i)).count();
         assert!(different >= 2, "four seeds gave {different} band(s): {curve}");
     }
+}
+
+/// What was made beside the drawing for some outputs is the same as what is made later for others.
+#[test]
+fn solids_made_ahead_are_those_made_later() {
+    let along: CurveSpec = "line:40mm".parse().unwrap();
+    let job = BandBuilder::new("fixtures/exemplars/vine.svg", along).width_mm(10.0).build().unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let outputs = |names: &[&str]| -> Vec<Output> {
+        names.iter().map(|name| Output::file(folder.path().join(name)).unwrap()).collect()
+    };
+    let band = |outputs: &[Output]| job.run_all_for(outputs, &mut |_| {}).unwrap().swap_remove(0);
+    let ahead = outputs(&["ahead.svg", "ahead.stl", "again.stl"]);
+    band(&ahead).write(&ahead, None, &mut |_| {}).unwrap();
+    let later = outputs(&["later.stl", "later.obj", "later.svg"]);
+    band(&outputs(&["never.3mf"])).write(&later, None, &mut |_| {}).unwrap();
+    let bytes = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+    assert_eq!(bytes("ahead.svg"), bytes("later.svg"));
+    assert_eq!(bytes("ahead.stl"), bytes("later.stl"));
+    assert_eq!(bytes("ahead.stl"), bytes("again.stl"));
+    assert!(!folder.path().join("never.3mf").exists() && !bytes("later.obj").is_empty());
 }

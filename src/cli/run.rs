@@ -115,7 +115,7 @@ fn run_band(arguments: &BandArguments) -> Result<ExitCode, CliError> {
         None => job.check_outputs(&outputs, report_target.as_ref())?,
     }
     let progress = Progress::new(quiet, outputs.iter().map(Output::target).chain(&report_target));
-    let bands = job.run_all(&mut |stage| progress.show(stage))?;
+    let bands = job.run_all_for(&outputs, &mut |stage| progress.show(stage))?;
     let mut show = |stage| progress.show(stage);
     let reports = match wanted {
         Some(_) => write_numbered(&bands, &outputs, report_target.as_ref(), &mut show)?,

@@ -6,15 +6,21 @@
 
 use glam::DVec2;
 
-use crate::planar::{Contour, Part, Region};
+use crate::planar::{Contour, Grid, Part, Region};
 
 /// Chords of the erosion, as a part of the width: what is thinner than the width by less than that may be missed.
 const ARC_PART: f64 = 0.005;
+/// Sums of lengths and angles are this exact, and far more so.
+const ROUNDING: f64 = 1e-9;
 
 /// The middles of the boxes around those components of `region` that are nowhere as wide as `width_mm`.
 pub fn thin_everywhere(region: &Region, width_mm: f64) -> Vec<DVec2> {
+    let mut is_lost: Vec<bool> =
+        region.parts().iter().map(|part| !is_surely_wide(part, region.grid(), 0.5 * width_mm)).collect();
+    if !is_lost.contains(&true) {
+        return Vec::new();
+    }
     let left = region.offset(-0.5 * width_mm, ARC_PART * width_mm);
-    let mut is_lost = vec![true; region.components()];
     for piece in left.parts() {
         let p = piece.exterior().points()[0];
         let holds = |part: &Part| {
@@ -30,6 +36,27 @@ pub fn thin_everywhere(region: &Region, width_mm: f64) -> Vec<DVec2> {
     }
     let lost = region.parts().iter().zip(is_lost).filter(|(_, is_lost)| *is_lost);
     lost.map(|(part, _)| middle(region, part.exterior())).collect()
+}
+
+/// Whether there is more of a part than can lie within `radius_mm` of its outline, so that a disc fits. What lies so near
+/// lies beside an edge, or at a corner that turns away from the ink, in the sector between its edges' normals.
+fn is_surely_wide(part: &Part, grid: Grid, radius_mm: f64) -> bool {
+    let (mut length_mm, mut turns) = (0.0, 0.0);
+    for contour in part.contours() {
+        let points = contour.points();
+        let edge = |i: usize| {
+            let [p, q] = [i, i + 1].map(|i| grid.to_mm(points[i % points.len()]));
+            q - p
+        };
+        for i in 0..points.len() {
+            let (here, next) = (edge(i), edge(i + 1));
+            length_mm += here.length();
+            // The ink is on the left, so a turn to the right is away from it.
+            turns += (-here.angle_to(next)).max(0.0);
+        }
+    }
+    let area_mm2: f64 = part.contours().map(|contour| contour.area_mm2(grid)).sum();
+    area_mm2 > (radius_mm * length_mm + 0.5 * radius_mm * radius_mm * turns) * (1.0 + ROUNDING)
 }
 
 /// The middles of the boxes around those components and holes of `region` whose outlines are around less than `area_mm2`.
@@ -66,6 +93,19 @@ mod tests {
             lost[0].distance(DVec2::new(0.15, 5.0)) < 1e-6 && lost[1].distance(DVec2::new(13.0, 3.0)) < 1e-6
         );
         assert!(thin_everywhere(&region(&of), 0.2).is_empty());
+    }
+
+    #[test]
+    fn enough_ink_has_room_for_a_disc() {
+        let grid = region(&[(0, 0, 5, 5)]).grid();
+        let is_wide = |of, radius_mm| is_surely_wide(&region(of).parts()[0], grid, radius_mm);
+        // A square of 5 mm holds a disc of 5 mm; half of that is sure.
+        assert!(is_wide(&[(0, 0, 50, 50)], 1.24) && !is_wide(&[(0, 0, 50, 50)], 1.26));
+        // Four corners of the hole of a frame turn away from its ink.
+        let frame = [(0, 0, 50, 50), (10, 10, 30, 30)];
+        let sectors = |r: f64| 32.0 * r + 0.5 * r * r * std::f64::consts::TAU;
+        let most = (1..500).map(|i| f64::from(i) * 1e-3).take_while(|&r| sectors(r) < 16.0).last().unwrap();
+        assert!(is_wide(&frame, most) && !is_wide(&frame, most + 1e-3));
     }
 
     #[test]

@@ -1,60 +1,43 @@
-//! A band along a curve: from the exemplar to verified files.
+//! A band along a curve: from the exemplar to a part that has the planned topology.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use glam::DVec2;
 
 use super::bridging::{self, BridgesReport};
 use super::builder::BandJob;
-use super::certificate::{FileDigest, sha256};
+use super::certificate::sha256;
 use super::choice::Choice;
 use super::cut::{Cut, read_exemplar, slice};
 use super::describe::describe;
 use super::error::JobError;
-use super::extrude::{file_name, name};
-use super::laser::Cutting;
-use super::making::{self, Border, Mended, Quantities};
-use super::output::{Format, Output, Pending, Target, persist};
+use super::judged::Drawn;
+use super::making::{self, Border, Mended};
+use super::output::Output;
 use super::part::{Part, PartError};
-use super::picture::Pictured;
 use super::plan::Plan;
-use super::print::{self, MeshFile, Meshes};
+use super::raised::Raised;
 use super::report::{BandReport, InputReport};
-use super::small;
 use super::stage::{Clock, Stage};
 use super::ways::{Runs, ways, weighed, weighed_note};
 use crate::domain::{BandMap, CurveSpec, PlanarCurve};
 use crate::exemplar::{Limits, read_path};
-use crate::export::{self, MeshDocument, SvgDocument, SvgOptions};
-use crate::fabricate::{self, Counts, Solid};
+use crate::fabricate::{self, Counts};
 use crate::fit::{FitOptions, Outline, Prepared, Sides, StitchMethod};
-use crate::planar::{Region, Tolerances};
+use crate::planar::Region;
 use crate::topology::Topology;
-use crate::verify::{self, Expected, Mismatch, NarrowPlaces, Narrowest, SvgReport};
+use crate::verify::Mismatch;
 
 /// The chord error is shared out: these parts are for bending, for mapping and for fitting curves to the SVG, and
 /// what is left for flattening the exemplar.
 const FIT_SHARE: f64 = 0.125;
 const MAP_SHARE: f64 = 0.125;
-const SVG_SHARE: f64 = 0.5;
-/// Ink thinner than this is worth a warning, in millimetres: about the width of a laser's cut.
-const HAIRLINE_MM: f64 = 0.1;
 /// When the counts are not as planned, chords cut through a gap or a strand: smaller ones are tried.
 const CHORD_TRIES: [f64; 4] = [1.0, 0.25, 0.06, 0.015];
-
-/// A drawing that has passed, and what was found in it.
-#[derive(Debug, Clone)]
-struct Drawn {
-    drawing: SvgDocument,
-    found: SvgReport,
-}
 
 /// When a drawing has not the counts of its part, what is finer than the chord error was lost, and the band is made again
 /// within these parts of it.
 const FINER_CHORDS: [f64; 2] = [0.25, 0.0625];
-
-/// What a drawing without a file is called.
-const DRAWING: &str = "the drawing";
 
 /// A band that has the planned topology, ready to be written.
 #[derive(Debug, Clone)]
@@ -67,13 +50,20 @@ pub struct Band {
     pub(super) counts: Counts,
     pub(super) report: BandReport,
     /// The drawing, once it has passed.
-    drawn: Option<Drawn>,
+    pub(super) drawn: Option<Drawn>,
+    /// The solid and its files, once they have passed.
+    pub(super) raised: Option<Raised>,
 }
 
 impl Band {
     /// The bands that the job's choice takes, at least one.
-    pub(super) fn all(job: &BandJob, progress: &mut dyn FnMut(Stage)) -> Result<Vec<Self>, JobError> {
-        let (bands, is_fine_enough) = Self::all_within_chord(job, progress)?;
+    /// Solids of `outputs` are made beside the drawing.
+    pub(super) fn all(
+        job: &BandJob,
+        outputs: &[Output],
+        progress: &mut dyn FnMut(Stage),
+    ) -> Result<Vec<Self>, JobError> {
+        let (bands, is_fine_enough) = Self::all_within_chord(job, outputs, progress)?;
         if is_fine_enough {
             return Ok(bands);
         }
@@ -82,7 +72,7 @@ impl Band {
             let Some(tolerances) = job.tolerances.with_chord_mm(chord_mm) else { break };
             // The exemplar too is read anew, as what is lost may have come too close there.
             let finer = BandJob { tolerances, ..job.clone() };
-            if let Ok((mut bands, true)) = Self::all_within_chord(&finer, progress) {
+            if let Ok((mut bands, true)) = Self::all_within_chord(&finer, outputs, progress) {
                 bands.iter_mut().for_each(|band| band.report.made.notes.push(format!(
                     "made within {chord_mm} mm instead of {asked_mm} mm, at which something so fine was lost that the counts changed"
                 )));
@@ -95,6 +85,7 @@ impl Band {
     /// The bands, and whether their drawings have the counts of their parts.
     fn all_within_chord(
         job: &BandJob,
+        outputs: &[Output],
         progress: &mut dyn FnMut(Stage),
     ) -> Result<(Vec<Self>, bool), JobError> {
         let mut clock = Clock::new(progress);
@@ -117,9 +108,9 @@ impl Band {
         let ways = ways(job, &mut cut, &map, &mut clock)?;
         let mut refusal = None;
         for (number, way) in ways.iter().enumerate() {
-            let made = way
-                .runs(job, &cut, &map, &mut clock)
-                .and_then(|runs| Self::follow(runs, job, &cut, &map, curve_input.as_ref(), &mut clock));
+            let made = way.runs(job, &cut, &map, &mut clock).and_then(|runs| {
+                Self::follow(runs, (job, outputs), &cut, &map, curve_input.as_ref(), &mut clock)
+            });
             match made {
                 Ok((mut bands, is_fine_enough)) => {
                     let weighed = weighed(&ways, number);
@@ -139,7 +130,7 @@ impl Band {
     /// The bands that follow the sequences of one way, and whether their drawings have the counts of their parts.
     fn follow(
         runs: Runs,
-        job: &BandJob,
+        (job, outputs): (&BandJob, &[Output]),
         cut: &Cut,
         map: &BandMap,
         curve_input: Option<&InputReport>,
@@ -157,8 +148,10 @@ impl Band {
                 clock.time(Stage::Bridge, || band.lay_bridges(width_mm, inside))?;
             }
             band.enforce(Border::Round, clock)?;
-            // A drawing that does not pass is left for `deliver` to tell of, which knows the name of its file.
-            if let Err(JobError::Mismatch { mismatch, .. }) = band.pass(clock) {
+            // What does not pass is left for `deliver` to tell of, which knows the names of files.
+            let (drawn, raised) = clock.both(|clock| band.drawn(clock), |clock| band.raised(outputs, clock));
+            (band.drawn, band.raised) = (drawn.as_ref().ok().cloned(), raised.ok());
+            if let Err(JobError::Mismatch { mismatch, .. }) = drawn {
                 is_fine_enough &= !matches!(mismatch, Mismatch::Components { .. } | Mismatch::Holes { .. });
             }
             band.report.made.times.clone_from(&clock.times);
@@ -197,7 +190,7 @@ impl Band {
         let report =
             describe(job, cut, &plan, planned, map, &outline, &part, curve_input, clock.times.clone());
         let counts = Counts::of(&part.region);
-        Ok(Self { job: job.clone(), part, plan, planned, counts, report, drawn: None })
+        Ok(Self { job: job.clone(), part, plan, planned, counts, report, drawn: None, raised: None })
     }
 
     /// Gives the part bridges of at least `width_mm` so that it meets the goal. `inside` is a point in the inside of
@@ -268,299 +261,6 @@ impl Band {
     pub fn topology(&self) -> Topology {
         self.planned
     }
-
-    /// Encodes every output, reads each again, counts, and gives them their names only if all pass. The report
-    /// goes to `report_file` as JSON, if one is named.
-    ///
-    /// # Errors
-    /// [`JobError`] when a file cannot be written or does not pass; then none of them exists under its name.
-    pub fn write(
-        &self,
-        outputs: &[Output],
-        report_file: Option<&Target>,
-        progress: &mut dyn FnMut(Stage),
-    ) -> Result<BandReport, JobError> {
-        self.job.check_outputs(outputs, report_file)?;
-        let (report, pending) = self.deliver(outputs, progress)?;
-        persist(pending, report_file.map(|target| (target, report.to_json())))?;
-        Ok(report)
-    }
-
-    /// Every output, encoded, read again and counted, on its way to its name; and the report.
-    pub(super) fn deliver(
-        &self,
-        outputs: &[Output],
-        progress: &mut dyn FnMut(Stage),
-    ) -> Result<(BandReport, Vec<Pending>), JobError> {
-        let mut clock = Clock::new(progress);
-        let mut report = self.report.clone();
-        let expected = self.expected();
-        // The solid knows nothing of the drawing.
-        let (drawn, meshes) = clock.both(
-            |clock| self.drawn.clone().map_or_else(|| self.drawn(clock), Ok),
-            |clock| {
-                let is_shown = self.job.options.picture.view.is_some();
-                let make = |notes: &mut Vec<String>| self.solid(notes);
-                Meshes::new(outputs, is_shown, &self.document(), &expected, clock, make)
-            },
-        );
-        let Drawn { drawing, found } = drawn.map_err(|error| match error {
-            JobError::Mismatch { mismatch, remedy, .. } => {
-                JobError::Mismatch { file: shown(outputs), mismatch, remedy }
-            }
-            error => error,
-        })?;
-        let mut meshes = meshes?;
-        let laser = &self.job.options.laser;
-        let mut cutting = match laser.is_needed(outputs) {
-            true => Some(clock.time(Stage::CutLines, || self.cutting())?),
-            false => None,
-        };
-        let mut pending = Vec::new();
-        // A sign is judged as it is left of its plate, and its pattern is not.
-        let narrow_places = match cutting.as_ref().filter(|_| laser.carve) {
-            Some(cutting) => clock.time(Stage::Verify, || self.judge(cutting.kept(), outputs))?,
-            None => found.narrow_places.clone(),
-        };
-        let min_feature = narrow_places.ink.first().copied();
-        (report.made.min_feature, report.made.min_gap) = (min_feature, narrow_places.gaps.first().copied());
-        report.made.narrow_places.clone_from(&narrow_places);
-        let mut digests = Vec::new();
-        let mut sizes = Vec::new();
-        let mut digest = |output: &Output, bytes: &[u8]| {
-            let file = name(output.target()).display().to_string();
-            digests.push(FileDigest { file, format: output.format().name(), sha256: sha256(bytes) });
-        };
-        for output in outputs {
-            if let Some(cutting) = cutting.as_mut().filter(|_| laser.makes(output.format())) {
-                let (item, bytes) =
-                    cutting.write(output, &self.job.options.picture, &narrow_places, &mut clock)?;
-                sizes.push(bytes.len());
-                // A certificate counts the pattern, and not what is left around it.
-                if laser.cuts(output.format()) && !laser.carve {
-                    digest(output, &bytes);
-                }
-                pending.push(item);
-                continue;
-            }
-            let item = match output.format() {
-                Format::Dxf => unreachable!("a DXF has cut lines"),
-                Format::Svg => {
-                    report.made.svg_segments = Some([drawing.lines, drawing.cubics]);
-                    digest(output, drawing.text.as_bytes());
-                    sizes.push(drawing.text.len());
-                    let item = Pending::new(output.target(), drawing.text.clone().into_bytes())?;
-                    if clock.time(Stage::Verify, || item.read_again())? != drawing.text.as_bytes() {
-                        let source = std::io::Error::other("the file differs from what was written to it");
-                        let path = name(output.target());
-                        return Err(JobError::Export(export::ExportError::Write { path, source }));
-                    }
-                    item
-                }
-                Format::Stl | Format::Threemf | Format::Obj => {
-                    let MeshFile { item, bytes, found } = meshes.next();
-                    digest(output, &bytes);
-                    sizes.push(bytes.len());
-                    report.made.triangles = Some(found.triangles);
-                    report.made.shells = Some(found.shells.len());
-                    report.made.genus = Some(found.genus);
-                    report.made.volume_mm3 = Some(found.volume_mm3);
-                    item
-                }
-                Format::Png => {
-                    let bridges = self.report.bridges.as_ref().map_or(&[][..], |b| &b.bridges);
-                    let engraved = cutting.as_ref().map(Cutting::engraved_on_part).transpose()?.flatten();
-                    let part = Pictured {
-                        region: &self.part.region,
-                        bridges,
-                        seams_mm: &self.part.seams_mm,
-                        narrow_mm: &report.made.narrow_places.places_mm(),
-                        engraved: engraved.as_ref(),
-                    };
-                    let picture = clock.time(Stage::Png, || {
-                        self.job.options.picture.png(&part, || meshes.solid(|notes| self.solid(notes)))
-                    })?;
-                    digest(output, &picture);
-                    sizes.push(picture.len());
-                    Pending::new(output.target(), picture)?
-                }
-            };
-            pending.push(item);
-        }
-        let options = &self.job.options;
-        report.made.quantities = Some(match cutting.as_ref().and_then(Cutting::sign) {
-            Some(sign) => Quantities::new(sign, options.thickness_mm, None, options.material.as_ref()),
-            None => {
-                let is_upright = options.print.profile(options.thickness_mm)?.is_upright();
-                let make = |notes: &mut Vec<String>| self.solid(notes);
-                let volume_mm3 = clock.time(Stage::Stl, || meshes.volume_mm3(is_upright, make))?;
-                let (region, material) = (&self.part.region, options.material.as_ref());
-                Quantities::new(region, options.thickness_mm, volume_mm3, material)
-            }
-        });
-        report.made.notes.append(&mut meshes.notes);
-        if let Some(narrowest) = min_feature.filter(|n| n.width_mm < HAIRLINE_MM) {
-            report.made.notes.push(format!(
-                "{} only {:.3} mm wide holds the {} together, which hardly any machine makes; a larger --width makes it wider in proportion",
-                if laser.carve { "material" } else { "ink" },
-                narrowest.width_mm,
-                if laser.carve { "plate" } else { "band" },
-            ));
-        }
-        let narrowest_mm = found.min_feature.map(|n| n.width_mm);
-        let lost = small::warnings(&self.part.region, &self.job.tolerances, outputs, narrowest_mm);
-        report.made.notes.extend(lost);
-        report.made.laser = cutting.map(|cutting| cutting.report);
-        report.made.bytes = sizes;
-        report.made.certificate.seal([found.components, found.holes], digests);
-        report.components = found.components;
-        report.holes = found.holes;
-        report.made.files = outputs.iter().map(|o| name(o.target()).display().to_string()).collect();
-        report.made.times.extend(clock.times);
-        Ok((report, pending))
-    }
-
-    /// What every file has to have. The widths of a pattern that is carved out of a plate are those of the plate, which is
-    /// judged by itself.
-    fn expected(&self) -> Expected {
-        let counts = Expected {
-            components: Some(self.counts.components.into()),
-            holes: Some(self.counts.holes.into()),
-            ..Expected::default()
-        };
-        match self.job.options.laser.carve {
-            true => counts,
-            false => Expected {
-                min_feature_mm: self.job.tolerances.min_feature_mm(),
-                min_gap_mm: self.job.tolerances.min_gap_mm(),
-                ..counts
-            },
-        }
-    }
-
-    /// The tolerances of what is kept: of the part, or of the plate that it is carved out of.
-    fn kept_tolerances(&self) -> Tolerances {
-        // Twice swapped is not swapped.
-        self.job.options.laser.of_pattern(&self.job.tolerances)
-    }
-
-    /// The narrowest places of what is left of a plate, which keeps the widths.
-    fn judge(&self, kept: &Region, outputs: &[Output]) -> Result<NarrowPlaces, JobError> {
-        let tolerances = self.kept_tolerances();
-        let places = making::worst_places(kept, &tolerances);
-        making::check_widths(kept, &tolerances)
-            .map_err(|mismatch| self.mismatch(shown(outputs), mismatch, &places))?;
-        Ok(places)
-    }
-
-    /// The drawing, which has passed: the promise at the machine's tolerance is checked on it, so it is always made.
-    fn drawn(&self, clock: &mut Clock<'_>) -> Result<Drawn, JobError> {
-        let drawing = clock.time(Stage::Svg, || self.svg())?;
-        let found = clock.time(Stage::Verify, || self.read_svg(drawing.text.as_bytes()))?;
-        found
-            .check(&self.expected())
-            .map_err(|mismatch| self.mismatch(DRAWING.into(), mismatch, &found.narrow_places))?;
-        Ok(Drawn { drawing, found })
-    }
-
-    /// The part as an SVG drawing.
-    ///
-    /// # Errors
-    /// [`JobError::Export`] when the drawing cannot be made.
-    pub fn svg(&self) -> Result<SvgDocument, JobError> {
-        let options = SvgOptions {
-            width_mm: self.part.page_mm.x,
-            height_mm: self.part.page_mm.y,
-            chord_mm: self.job.tolerances.chord_mm() * SVG_SHARE,
-            title: None,
-            // The name only: the same drawing in another folder gives the same bytes.
-            description: Some(format!(
-                "{} of {}",
-                self.report.generator,
-                file_name(&self.job.options.exemplar)
-            )),
-        };
-        Ok(export::svg(&self.part.region, &options)?)
-    }
-
-    /// The part as cut lines.
-    fn cutting(&self) -> Result<Cutting, JobError> {
-        let tolerances = self.kept_tolerances();
-        let curve_chord_mm = tolerances.chord_mm() * SVG_SHARE;
-        let of = format!("{} of {}", self.report.generator, file_name(&self.job.options.exemplar));
-        let laser = &self.job.options.laser;
-        Cutting::new(laser, &self.part.region, self.part.page_mm, &tolerances, curve_chord_mm, of)
-    }
-
-    /// The part as a binary STL solid.
-    ///
-    /// # Errors
-    /// [`JobError`] when the solid cannot be made.
-    pub fn stl(&self) -> Result<Vec<u8>, JobError> {
-        print::mesh(Format::Stl, &self.solid(&mut Vec::new())?, &self.document())
-    }
-
-    /// The part as a solid; what the user may want to know is added to `notes`.
-    fn solid(&self, notes: &mut Vec<String>) -> Result<Solid, JobError> {
-        let options = &self.job.options;
-        let chord_mm = self.job.tolerances.chord_mm();
-        options.print.solid(&self.part.region, options.thickness_mm, chord_mm, notes)
-    }
-
-    /// What files say of the solid.
-    fn document(&self) -> MeshDocument {
-        let options = &self.job.options;
-        let seed = match options.choice {
-            Choice::Drawn { seed, .. } => Some(seed),
-            _ => options.seed,
-        };
-        options.print.document(&options.exemplar, seed, self.counts)
-    }
-
-    /// What was found in the drawing, which is kept for [`Band::deliver`].
-    pub(super) fn pass(&mut self, clock: &mut Clock<'_>) -> Result<&SvgReport, JobError> {
-        let drawn = self.drawn(clock)?;
-        Ok(&self.drawn.insert(drawn).found)
-    }
-
-    fn read_svg(&self, bytes: &[u8]) -> Result<SvgReport, JobError> {
-        verify::read_svg(bytes, self.job.tolerances.chord_mm() / 4.0)
-            .map_err(|error| JobError::Unjudged { file: DRAWING.into(), error })
-    }
-
-    fn mismatch(&self, file: PathBuf, mismatch: Mismatch, found: &NarrowPlaces) -> JobError {
-        let scale = |narrowest: Option<&Narrowest>, wanted: f64, option: &str| {
-            let factor = narrowest.map(|n| wanted / n.width_mm).filter(|f| f.is_finite() && *f < 100.0);
-            let width = factor.map(|f| format!("--width {:.0}mm or more", (self.report.width_mm * f).ceil()));
-            // A tile cannot be mended, and what was mended has been.
-            let mend = if self.job.options.enforce { "" } else { "--enforce would mend it, or " };
-            format!(
-                "; {mend}{} would do, or a smaller {option}",
-                width.unwrap_or_else(|| "a larger --width".to_owned())
-            )
-        };
-        let tolerances = &self.kept_tolerances();
-        let remedy = match mismatch {
-            Mismatch::Feature { .. } => {
-                scale(found.ink.first(), tolerances.min_feature_mm(), "--min-feature")
-            }
-            Mismatch::Gap { .. } => scale(found.gaps.first(), tolerances.min_gap_mm(), "--min-gap"),
-            Mismatch::Components { .. } | Mismatch::Holes { .. } => {
-                let chord_mm = tolerances.chord_mm();
-                format!(
-                    "; what is finer than the chord error was lost: try a --chord smaller than {chord_mm} mm or a larger --width"
-                )
-            }
-            _ => String::new(),
-        };
-        JobError::Mismatch { file, mismatch, remedy }
-    }
-}
-
-/// The output that is named when the part is at fault.
-fn shown(outputs: &[Output]) -> PathBuf {
-    let shown = outputs.iter().find(|o| o.format() == Format::Svg).or(outputs.first());
-    shown.map_or_else(|| DRAWING.into(), |o| name(o.target()))
 }
 
 fn read_curve(

@@ -12,7 +12,8 @@ use super::laser::{Cutting, LaserOptions, LaserReport};
 use super::making::{self, Border, EnforcedReport, Quantities};
 use super::output::{Format, Output, Pending, Target, persist};
 use super::picture::{PictureOptions, Pictured, Show};
-use super::print::{MeshFile, Meshes, PrintOptions};
+use super::print::PrintOptions;
+use super::raised::{self, Raised};
 use super::report::{InputReport, StageTime};
 use super::small;
 use super::stage::{Clock, Stage};
@@ -179,18 +180,19 @@ pub fn extrude(
         false => None,
     };
     let kept = cutting.as_ref().filter(|_| laser.carve).map_or(&region, Cutting::kept);
+    let is_shown = picture.view.is_some() || !print.profile(thickness_mm)?.is_upright();
+    let wanted = raised::Wanted { outputs, document: &document, expected: &expected, is_shown };
     // Neither needs the other.
-    let (narrow_places, meshes) = clock.both(
+    let (narrow_places, raised) = clock.both(
         |clock| {
             clock.time(Stage::Verify, || {
                 let narrow_places = making::worst_places(kept, tolerances);
                 check_widths(kept, tolerances, file, enforce).map(|()| narrow_places)
             })
         },
-        |clock| Meshes::new(outputs, picture.view.is_some(), &document, &expected, clock, raise),
+        |clock| Raised::new(wanted, clock, raise),
     );
-    let narrow_places = narrow_places?;
-    let mut meshes = meshes?;
+    let (narrow_places, raised) = (narrow_places?, raised?);
     let (mut solid, mut drawn) = (None, None);
     let mut pending = Vec::with_capacity(outputs.len());
     let mut sizes = Vec::with_capacity(outputs.len());
@@ -205,10 +207,10 @@ pub fn extrude(
         let item = match output.format() {
             Format::Dxf => unreachable!("a DXF has cut lines"),
             Format::Stl | Format::Threemf | Format::Obj => {
-                let MeshFile { item, bytes, found } = meshes.next();
-                sizes.push(bytes.len());
-                solid = Some(found);
-                item
+                let file = raised.file(output.format()).expect("its output asked for it");
+                sizes.push(file.bytes.len());
+                solid = Some(file.found.clone());
+                clock.time(Stage::Verify, || Pending::unchanged(target, file.bytes.clone()))?
             }
             Format::Svg => {
                 let chord_mm = tolerances.chord_mm();
@@ -229,7 +231,7 @@ pub fn extrude(
                     narrow_mm: &narrow_mm,
                     engraved: engraved.as_ref(),
                 };
-                let picture = clock.time(Stage::Png, || picture.png(&part, || meshes.solid(raise)))?;
+                let picture = clock.time(Stage::Png, || picture.png(&part, raised.solid()))?;
                 sizes.push(picture.len());
                 Pending::new(target, picture)?
             }
@@ -238,14 +240,10 @@ pub fn extrude(
     }
     let quantities = match cutting.as_ref().and_then(Cutting::sign) {
         Some(sign) => Quantities::new(sign, thickness_mm, None, material.as_ref()),
-        None => {
-            let is_upright = print.profile(thickness_mm)?.is_upright();
-            let volume_mm3 = clock.time(Stage::Stl, || meshes.volume_mm3(is_upright, raise))?;
-            Quantities::new(&region, thickness_mm, volume_mm3, material.as_ref())
-        }
+        None => Quantities::new(&region, thickness_mm, raised.volume_mm3(), material.as_ref()),
     };
     let narrowest_mm = narrow_places.ink.first().map(|n| n.width_mm);
-    notes.append(&mut meshes.notes);
+    notes.extend_from_slice(&raised.notes);
     notes.extend(small::warnings(&region, tolerances, outputs, narrowest_mm));
     persist(pending, None)?;
     Ok(ExtrudeReport {

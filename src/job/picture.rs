@@ -131,13 +131,13 @@ impl PictureOptions {
     }
 
     /// The shaded picture of a solid, if that is what is asked for, else of the flat part.
-    pub(super) fn png<'s>(
-        &self,
-        part: &Pictured<'_>,
-        solid: impl FnOnce() -> Result<&'s Solid, JobError>,
-    ) -> Result<Vec<u8>, JobError> {
+    ///
+    /// # Panics
+    /// If a view is asked for, and there is no solid.
+    pub(super) fn png(&self, part: &Pictured<'_>, solid: Option<&Solid>) -> Result<Vec<u8>, JobError> {
         if let Some(view) = self.view {
-            let painted = Painted { solid: solid()?, colour: DEFAULT_COLOUR };
+            let solid = solid.expect("a solid is made for its picture");
+            let painted = Painted { solid, colour: DEFAULT_COLOUR };
             return Ok(export::view_png(&[painted], view, self.pixels)?);
         }
         let default = [Show::Bridges];

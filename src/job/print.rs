@@ -2,20 +2,13 @@
 //! or OBJ.
 
 use std::borrow::Cow;
-use std::collections::VecDeque;
 use std::path::Path;
 
-use super::error::{JobError, OURS};
-use super::extrude::name;
-use super::output::{Format, Output, Pending};
-use super::stage::{Clock, Stage};
+use super::error::JobError;
+use super::output::Format;
 use crate::export::{self, MeshDocument};
 use crate::fabricate::{self, Bed, Counts, Profile, Solid};
 use crate::planar::Region;
-use crate::verify::{self, Expected, MeshReport, Mismatch};
-
-/// The unit that a 3MF must name: many programs ask, or guess, where none is named.
-const UNIT: &str = "millimeter";
 
 /// How a solid is made, beyond its thickness.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -115,112 +108,4 @@ pub(super) fn mesh(format: Format, solid: &Solid, document: &MeshDocument) -> Re
         Format::Obj => export::obj(solid, document),
         _ => export::stl(solid, &document.application)?,
     })
-}
-
-/// The files of a solid.
-#[derive(Default)]
-pub(super) struct Meshes {
-    /// The solid, once it was made.
-    solid: Option<Solid>,
-    /// The volume of the last of the files, as it was read again.
-    read_mm3: Option<f64>,
-    /// What the user may want to know of it.
-    pub(super) notes: Vec<String>,
-    /// The files, in the order of the outputs that they are for.
-    files: VecDeque<MeshFile>,
-}
-
-/// A file of a solid that has passed.
-pub(super) struct MeshFile {
-    pub(super) item: Pending,
-    /// What it holds.
-    pub(super) bytes: Vec<u8>,
-    /// What was found in it.
-    pub(super) found: MeshReport,
-}
-
-impl Meshes {
-    /// Those of `outputs` that hold a solid, each written, read again and held against the plan. A solid that will be shown is
-    /// made without any.
-    ///
-    /// # Errors
-    /// [`JobError`] when the solid cannot be made, and of the first file that cannot be written or does not pass.
-    pub(super) fn new(
-        outputs: &[Output],
-        is_shown: bool,
-        document: &MeshDocument,
-        expected: &Expected,
-        clock: &mut Clock<'_>,
-        make: impl FnOnce(&mut Vec<String>) -> Result<Solid, JobError>,
-    ) -> Result<Self, JobError> {
-        let mut meshes = Self::default();
-        let mut outputs = outputs.iter().filter(|output| output.format().is_solid()).peekable();
-        if outputs.peek().is_none() && !is_shown {
-            return Ok(meshes);
-        }
-        let solid = clock.time(Stage::Stl, || make(&mut meshes.notes))?;
-        for output in outputs {
-            let bytes = clock.time(Stage::Stl, || mesh(output.format(), &solid, document))?;
-            let item = Pending::new(output.target(), bytes)?;
-            let (bytes, found) = clock.time(Stage::Verify, || check_mesh(output, &item, &solid, expected))?;
-            meshes.read_mm3 = Some(found.volume_mm3);
-            meshes.files.push_back(MeshFile { item, bytes, found });
-        }
-        Ok(Self { solid: Some(solid), ..meshes })
-    }
-
-    /// The next of the files.
-    pub(super) fn next(&mut self) -> MeshFile {
-        self.files.pop_front().expect("there is one for each output that holds a solid")
-    }
-
-    /// The volume of the solid in cubic millimetres, if one was made or its walls are not upright; else there is no need of
-    /// one.
-    pub(super) fn volume_mm3(
-        &mut self,
-        is_upright: bool,
-        make: impl FnOnce(&mut Vec<String>) -> Result<Solid, JobError>,
-    ) -> Result<Option<f64>, JobError> {
-        if self.read_mm3.is_some() || (is_upright && self.solid.is_none()) {
-            return Ok(self.read_mm3);
-        }
-        Ok(Some(self.solid(make)?.volume_mm3()))
-    }
-
-    /// The solid that was made before, or the one that is made now.
-    pub(super) fn solid(
-        &mut self,
-        make: impl FnOnce(&mut Vec<String>) -> Result<Solid, JobError>,
-    ) -> Result<&Solid, JobError> {
-        Ok(match &mut self.solid {
-            Some(solid) => solid,
-            none => none.insert(make(&mut self.notes)?),
-        })
-    }
-}
-
-/// Reads a written solid again and holds it against the plan: what was asked for, and the solid itself.
-fn check_mesh(
-    output: &Output,
-    pending: &Pending,
-    solid: &Solid,
-    expected: &Expected,
-) -> Result<(Vec<u8>, MeshReport), JobError> {
-    let bytes = pending.read_again()?;
-    let read = match output.format() {
-        Format::Threemf => verify::read_threemf(&bytes),
-        Format::Obj => verify::read_obj(&bytes),
-        _ => verify::read_stl(&bytes),
-    };
-    let file = || name(output.target());
-    let report = read.map_err(|error| JobError::Unjudged { file: file(), error })?;
-    let mismatch =
-        |mismatch, remedy: &str| JobError::Mismatch { file: file(), mismatch, remedy: remedy.to_owned() };
-    report.check(expected).map_err(|found| mismatch(found, ""))?;
-    if output.format() == Format::Threemf && report.unit != Some(UNIT) {
-        let found = Mismatch::Unit { found: report.unit, wanted: UNIT };
-        return Err(mismatch(found, OURS));
-    }
-    report.is_like(solid.facets()).map_err(|found| mismatch(found.into(), OURS))?;
-    Ok((bytes, report))
 }
