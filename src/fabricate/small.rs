@@ -6,7 +6,7 @@
 
 use glam::DVec2;
 
-use crate::planar::{Contour, Grid, Part, Region};
+use crate::planar::{Contour, FillRule, Grid, Part, Region};
 
 /// Chords of the erosion, as a part of the width: what is thinner than the width by less than that may be missed.
 const ARC_PART: f64 = 0.005;
@@ -15,26 +15,27 @@ const ROUNDING: f64 = 1e-9;
 
 /// The middles of the boxes around those components of `region` that are nowhere as wide as `width_mm`.
 pub fn thin_everywhere(region: &Region, width_mm: f64) -> Vec<DVec2> {
-    let mut is_lost: Vec<bool> =
-        region.parts().iter().map(|part| !is_surely_wide(part, region.grid(), 0.5 * width_mm)).collect();
-    if !is_lost.contains(&true) {
-        return Vec::new();
-    }
-    let left = region.offset(-0.5 * width_mm, ARC_PART * width_mm);
+    let grid = region.grid();
+    let is_doubtful = |part: &&Part| !is_surely_wide(part, grid, 0.5 * width_mm);
+    let doubtful: Vec<&Part> = region.parts().iter().filter(is_doubtful).collect();
+    let outlines = doubtful.iter().flat_map(|part| part.contours()).map(|c| c.points().to_vec());
+    let ink = Region::fill(grid, &outlines.collect::<Vec<_>>(), FillRule::Positive);
+    let left = ink.offset(-0.5 * width_mm, ARC_PART * width_mm);
+    let mut is_lost = vec![true; doubtful.len()];
     for piece in left.parts() {
         let p = piece.exterior().points()[0];
-        let holds = |part: &Part| {
+        let holds = |part: &&Part| {
             let (low, high) = part.exterior().bounds();
             (low.x..=high.x).contains(&p.x)
                 && (low.y..=high.y).contains(&p.y)
                 && part.exterior().contains(p)
                 && !part.holes().iter().any(|hole| hole.contains(p))
         };
-        if let Some(i) = region.parts().iter().position(holds) {
+        if let Some(i) = doubtful.iter().position(holds) {
             is_lost[i] = false;
         }
     }
-    let lost = region.parts().iter().zip(is_lost).filter(|(_, is_lost)| *is_lost);
+    let lost = doubtful.iter().zip(is_lost).filter(|(_, is_lost)| *is_lost);
     lost.map(|(part, _)| middle(region, part.exterior())).collect()
 }
 
@@ -74,7 +75,7 @@ fn middle(region: &Region, contour: &Contour) -> DVec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::planar::{FillRule, Grid, boxes};
+    use crate::planar::boxes;
 
     /// Boxes with a corner and a size in tenths of a millimetre.
     fn region(of: &[(i64, i64, i64, i64)]) -> Region {
