@@ -11,7 +11,9 @@
 //! orientation, so components and holes of what it maps stay the same; [`BandMap::map_contour`] stays within
 //! the chord error of that map.
 //!
-//! Excluded: reading files (a [`CurveSpec`] only names one), curves in space, and the minimum feature after
+//! Curves in space carry frames ([`SpaceCurve`]), and a [`SpaceMap`] lays a thick band along them.
+//!
+//! Excluded: reading files (a [`CurveSpec`] only names one), and the minimum feature after
 //! the map, which is measured where the part is made.
 
 mod arc;
@@ -26,6 +28,7 @@ mod rounding;
 #[cfg(test)]
 mod sample_curves;
 mod size;
+mod space;
 mod spec;
 mod squeeze;
 mod trace;
@@ -35,5 +38,6 @@ pub use curve::{Frame, PlanarCurve};
 pub use error::DomainError;
 pub use length::{LengthError, parse_length_mm};
 pub use size::{RectSize, RectSizeError};
+pub use space::{SpaceCurve, SpaceError, SpaceFrame, SpaceMap, Twist, TwistError};
 pub use spec::{CurveSpec, CurveSpecError};
 pub use squeeze::{Side, Squeeze};
