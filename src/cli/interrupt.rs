@@ -26,11 +26,17 @@ fn clean_up() {
 
 #[cfg(unix)]
 mod unix {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use std::sync::Arc;
+    use std::sync::atomic::AtomicBool;
+
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
+    use signal_hook::flag;
     use signal_hook::iterator::Signals;
     use signal_hook::low_level::emulate_default_handler;
 
     pub(super) fn watch() {
+        // Caught and forgotten: a file that grows beyond `ulimit -f` is then an error of the write like any other.
+        let _ = flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)));
         let ignored = ignored(&std::fs::read_to_string("/proc/self/status").unwrap_or_default());
         let signals = [SIGHUP, SIGINT, SIGTERM].into_iter().filter(|&signal| match ignored {
             Some(mask) => mask >> (signal - 1) & 1 == 0,
@@ -61,7 +67,8 @@ mod unix {
 
         #[test]
         fn ignored_signals_are_read_from_the_status() {
-            let status = "Name:\topenwork\nSigBlk:\t0000000000000000\nSigIgn:\t0000000000001001\nSigCgt:\t2\n";
+            let status =
+                "Name:\topenwork\nSigBlk:\t0000000000000000\nSigIgn:\t0000000000001001\nSigCgt:\t2\n";
             assert_eq!(ignored(status), Some(0x1001));
             assert_eq!(ignored("Name:\topenwork\n"), None);
         }

@@ -142,6 +142,7 @@ fn remedy(error: &io::Error) -> &'static str {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
             "free some space, or give another directory"
         }
+        io::ErrorKind::FileTooLarge => "allow larger files (ulimit -f), or give a directory that holds them",
         _ => "try another directory",
     }
 }

@@ -98,7 +98,8 @@ pub fn stage(path: &Path, bytes: &[u8]) -> Result<Staged, ExportError> {
         made.map_err(|error| ExportError::write(path, reason.map_or(error, io::Error::from_raw_os_error)))?;
     registry.insert(file.path().to_owned());
     drop(registry);
-    let written = file.write_all(bytes).and_then(|()| file.as_file().sync_data());
+    // Through the file itself, as errors of the wrapper tell of the temporary name.
+    let written = file.as_file_mut().write_all(bytes).and_then(|()| file.as_file().sync_data());
     // From here on, every way out removes the file.
     let staged = Staged { destination, temporary: Some(file.into_temp_path()) };
     written.map_err(|error| ExportError::write(path, error))?;
