@@ -81,7 +81,7 @@ cat <<'INTRO'
 Beside [makeable.md](makeable.md): *counted* by an independent program without any fault (facets of less than 1e-10 mm² are one), *sliced* to
 G-code by PrusaSlicer, *audited* by ezdxf without any fault. Bands go round a circle of 50 mm and are 10 mm wide, panels are 60 x 40 mm,
 all are 2 mm thick at a chord error of 0.05 mm. What is in bold is a fault. Command:
-`COUNTER=... PYTHON=... scripts/makeable-shapes.sh OUT_DIR EXEMPLAR.svg...`
+`COUNTER=... PYTHON=... scripts/makeable-shapes.sh OUT_DIR fixtures/exemplars/{filigree,vine,leaves}.svg`
 
 | shape | walls | STL | 3MF |
 |---|---|---|---|
