@@ -264,3 +264,25 @@ fn a_certificate_is_a_few_numbers_for_each_piece() {
     let each = (long - short) as f64 / (many - few) as f64;
     assert!(each < 20.0, "{each} bytes for each piece");
 }
+
+#[test]
+fn bridges_are_where_a_pressed_band_has_them() {
+    let room = Room::with(&["strands.svg"]);
+    // Wider ink would grow over the box of the band, so that all of it is pressed together first, bridges too.
+    room.succeeds(
+        "band strands.svg --along line:90mm --width 12mm --components 1 --bridge 1mm --min-feature 1.3mm --enforce \
+         -o band.svg --report band.json",
+    );
+    let report = room.json("band.json");
+    assert!(report["enforced"]["pressed_mm"][0].as_f64().unwrap() > 0.1, "{}", report["enforced"]);
+    let steps = report["certificate"]["bridges"].as_array().unwrap();
+    let bridges = report["bridges"]["bridges"].as_array().unwrap();
+    assert!(!steps.is_empty() && steps.len() == bridges.len());
+    for (step, bridge) in steps.iter().zip(bridges) {
+        for axis in 0..2 {
+            let [from, to] = ["from_mm", "to_mm"].map(|end| bridge[end][axis].as_f64().unwrap());
+            assert_eq!(step["position_um"][axis].as_f64().unwrap(), (500.0 * (from + to)).round());
+        }
+    }
+    room.succeeds("verify band.svg --certificate band.json");
+}

@@ -122,12 +122,19 @@ fn a_drawing_is_engraved_in_the_colours_of_the_process() {
         "p.toml",
         "[process.mine]\nlike = \"laser-ply-3mm\"\ncut_colour = \"#0000f0\"\nengrave_colour = \"#00ff00\"\n",
     );
-    let mine = "extrude plate.svg --processes p.toml --process mine --engrave name.svg";
-    for placed in ["", "--sheet 100x60mm"] {
-        let said = room.succeeds(&format!("{mine} {placed} --cut -o p.dxf -o p.svg --json"));
+    // On a sheet the drawing lies on the sheet's page: the part moves by 25 mm to the right and 15 mm down to its middle.
+    room.write(
+        "laid.svg",
+        "<svg xmlns='http://www.w3.org/2000/svg' width='100mm' height='60mm' viewBox='0 0 100 60'>\
+         <rect x='32' y='23' width='5' height='14'/><circle cx='65' cy='30' r='2'/></svg>",
+    );
+    let alone = "extrude plate.svg --processes p.toml --process mine --engrave name.svg";
+    let laid = "extrude plate.svg --processes p.toml --process mine --engrave laid.svg --sheet 100x60mm";
+    for (mine, name) in [(alone, "name.svg"), (laid, "laid.svg")] {
+        let said = room.succeeds(&format!("{mine} --cut -o p.dxf -o p.svg --json"));
         assert!(said.stderr.contains("engraves 50.6 mm"), "{}", said.stderr);
         let laser = &serde_json::from_slice::<Value>(&said.stdout).unwrap()["laser"];
-        assert_eq!(laser["engraved"]["file"], "name.svg");
+        assert_eq!(laser["engraved"]["file"], name);
         for file in ["p.dxf", "p.svg"] {
             let found = room.succeeds(&format!("verify {file} --components 1 --holes 1 --json"));
             let found: Value = serde_json::from_slice(&found.stdout).unwrap();
@@ -150,20 +157,23 @@ fn a_drawing_is_engraved_in_the_colours_of_the_process() {
     assert!(
         dxf.contains("2\nCUT\n70\n0\n62\n5\n420\n240\n") && dxf.contains("2\nENGRAVE\n70\n0\n62\n3\n6\n")
     );
-    // The plate moves by (25, 15) to the middle of the sheet, and what is engraved moves with it.
     assert!(svg.contains("M32 37L37 37"), "{svg}");
 
     room.draw("wide.svg", "<rect x='7' y='8' width='10' height='4'/>");
-    let wide = mine.replace("name.svg", "wide.svg");
+    let wide = alone.replace("name.svg", "wide.svg");
     room.refuses(&format!("{wide} -o q.dxf"), 2, &["--engrave", "wide.svg", "no material", "at (15.0", "mm"]);
-    room.refuses(&format!("{mine} -o q.stl"), 2, &["--engrave", "no output has cut lines"]);
+    room.refuses(&format!("{alone} -o q.stl"), 2, &["--engrave", "no output has cut lines"]);
     // A picture shows it on the part, wherever that lies on its plate.
-    for options in ["-o q.png", "--sheet 100x60mm -o q.dxf -o q.png"] {
-        room.succeeds(&format!("{mine} {options}"));
+    for options in [&format!("{alone} -o q.png"), &format!("{laid} -o q.dxf -o q.png")] {
+        room.succeeds(options);
         assert!(pixels(&room.read("q.png"), [0xf2, 0xc1, 0x4e]) > 500, "{options}");
     }
-    room.refuses(&format!("{mine} --cut -o name.svg"), 2, &["name.svg", "is an input"]);
-    room.refuses(&format!("{mine} --sheet 100x60mm --carve -o q.dxf"), 2, &["--engrave", "no material"]);
+    room.refuses(&format!("{alone} --cut -o name.svg"), 2, &["name.svg", "is an input"]);
+    room.refuses(&format!("{alone} --sheet 100x60mm -o q.dxf"), 2, &["--engrave", "no material", "--sheet"]);
+    // A sign has its name beside the pattern, where the part has no page.
+    room.refuses(&format!("{laid} --carve -o q.dxf"), 2, &["--engrave", "no material"]);
+    room.draw("corner.svg", "<rect x='2' y='50' width='12' height='5'/>");
+    room.succeeds(&format!("{} --carve -o q.dxf", laid.replace("laid.svg", "corner.svg")));
 }
 
 #[test]
@@ -214,8 +224,11 @@ fn the_program_tells_of_itself() {
     assert!(script.contains("_openwork()") && script.contains("--closed-pattern"), "{script}");
     assert_eq!(room.run("completions tcsh").code, 2);
 
-    std::fs::create_dir(room.path("man")).unwrap();
     room.succeeds("man --folder man");
+    // A folder that is there is as good, and one in another is made too.
+    room.succeeds("man --folder man");
+    room.succeeds("man --folder share/man/man1");
+    assert_eq!(room.read("share/man/man1/openwork.1"), room.read("man/openwork.1"));
     for (page, word) in
         [("openwork.1", "verify"), ("openwork-band.1", "along"), ("openwork-extrude.1", "thickness")]
     {
@@ -224,5 +237,6 @@ fn the_program_tells_of_itself() {
     }
     let one = room.succeeds("man");
     assert_eq!(one.stdout, room.read("man/openwork.1"));
-    room.refuses("man --folder nowhere", 2, &["nowhere"]);
+    room.write("file", "");
+    room.refuses("man --folder file", 2, &["cannot write file"]);
 }

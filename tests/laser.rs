@@ -185,6 +185,22 @@ fn bays_that_the_beam_does_not_get_into_are_told() {
 }
 
 #[test]
+fn limbs_that_burn_away_are_told() {
+    let room = Room::with(&[]);
+    // Spikes of 0.1 mm: 1.6 mm long, and 1 mm, on a plate of 40 by 15 mm.
+    room.draw("spikes.svg", "<path d='M5 55H45V40H30.1V39H30V40H20.1V38.4H20V40H5Z'/>");
+    let said = room.succeeds("extrude spikes.svg --kerf 0.15mm -o spikes.dxf --json");
+    assert!(said.stderr.contains("note: 2 limb(s) are narrower than the kerf"), "{}", said.stderr);
+    let report: Value = serde_json::from_slice(&said.stdout).unwrap();
+    let limb = &report["laser"]["burnt_limbs"][0];
+    assert!((number(limb, "length_mm") - 1.65).abs() < 0.15 && number(limb, "width_mm") < 0.11, "{limb}");
+    let x = limb["position_mm"][0].as_f64().unwrap();
+    assert!((x - 20.05).abs() < 0.1, "{limb}");
+    let said = room.succeeds("extrude spikes.svg --kerf 0.08mm -o spikes.dxf");
+    assert!(!said.stderr.contains("limb"), "{}", said.stderr);
+}
+
+#[test]
 fn a_sign_weighs_what_is_left_of_its_plate() {
     let room = Room::with(&[]);
     room.draw("frame.svg", FRAME);

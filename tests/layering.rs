@@ -58,7 +58,7 @@ const OWED: [(&str, &str); 3] = [
 ];
 
 /// Libraries that only these files or folders may name.
-const LIBRARIES: [(&str, &[&str]); 16] = [
+const LIBRARIES: [(&str, &[&str]); 17] = [
     ("i_overlay", &["src/planar/overlay.rs", "src/fabricate/caps.rs"]),
     ("i_triangle", &["src/fabricate/caps.rs"]),
     ("spade", &["src/verify", "src/fit/links.rs", "src/fabricate/caps.rs", "src/fabricate/enforce/core.rs"]),
@@ -74,7 +74,8 @@ const LIBRARIES: [(&str, &[&str]); 16] = [
     ("robust", &["src/verify/crossings.rs"]),
     ("clap", &["src/cli"]),
     ("indicatif", &["src/cli/progress.rs"]),
-    ("ctrlc", &["src/cli/mod.rs"]),
+    ("ctrlc", &["src/cli/interrupt.rs"]),
+    ("signal_hook", &["src/cli/interrupt.rs"]),
 ];
 
 fn root() -> &'static Path {

@@ -1,6 +1,10 @@
 //! The mesh files of one shape: they agree facet for facet, hold what was planned, and are told from broken ones.
 
-use glam::DVec2;
+#[allow(dead_code, reason = "each test crate uses a part of it")]
+mod common;
+
+use common::Room;
+use glam::{DVec2, DVec3};
 use openwork::export::{self, MeshDocument};
 use openwork::fabricate::{FabricateError, Profile, Solid, raise};
 use openwork::planar::{FillRule, Grid, Region};
@@ -86,6 +90,8 @@ proptest! {
         prop_assert_eq!((report.shells.len(), report.genus), (region.components(), region.holes() as i64));
         prop_assert!(report.shells.iter().all(|shell| shell.volume_mm3 > 0.0));
         prop_assert!((report.volume_mm3 - solid.volume_mm3()).abs() < 1e-6 * report.volume_mm3);
+        // Programs merge equal corners, and the facet is gone.
+        prop_assert!(solid.facets().all(|[a, b, c]| a != b && b != c && c != a));
         // Facets in the same order with the same coordinates give the same numbers to the last bit.
         same(&read_threemf(&threemf).unwrap(), &report);
         same(&read_obj(&obj).unwrap(), &report);
@@ -225,4 +231,30 @@ fn a_package_without_a_model_is_told() {
     let bytes = archive.finish().unwrap().into_inner();
     let text = read_threemf(&bytes).unwrap_err().to_string();
     assert!(text.contains("has no _rels/.rels"), "{text}");
+}
+
+/// The areas in square millimetres of the facets of a binary STL.
+fn areas(stl: &[u8]) -> Vec<f64> {
+    let number = |at: &[u8]| f64::from(f32::from_le_bytes(at.try_into().unwrap()));
+    let area = |facet: &[u8]| {
+        let numbers: Vec<f64> = facet[12..48].chunks_exact(4).map(number).collect();
+        let [a, b, c] = [0, 3, 6].map(|i| DVec3::from_slice(&numbers[i..]));
+        0.5 * (b - a).cross(c - a).length()
+    };
+    stl[84..].chunks_exact(50).map(area).collect()
+}
+
+#[test]
+fn no_facet_is_too_small_to_be_one() {
+    // Programs that look for facets without any area take those of less than this for such. This ornament has bends
+    // of less than a step of 32-bit floats where its pieces meet.
+    const NONE_MM2: f64 = 1e-10;
+    let room = Room::with(&["filigree.svg"]);
+    for walls in ["", "--chamfer 0.2mm", "--taper 3 --chamfer 0.2mm"] {
+        let band = "band filigree.svg --along circle:50mm --width 10mm --components 1 -o band.stl";
+        room.succeeds(&format!("{band} {walls}"));
+        let areas = areas(&room.read("band.stl"));
+        let least = areas.iter().copied().fold(f64::INFINITY, f64::min);
+        assert!(areas.len() > 50_000 && least > NONE_MM2, "{walls}: {} facets, {least:e} mm2", areas.len());
+    }
 }

@@ -32,7 +32,7 @@ pub(super) struct LaserArgs {
     #[arg(long)]
     pub(super) carve: bool,
     /// Engrave the outlines of this drawing on the part (SVG), on a layer of its own and before anything is cut. Its page is
-    /// the part's: what is drawn over the part's .svg is in its place. Refused where there is no material; a .png shows it in yellow
+    /// the part's, or the plate's with --sheet: what is drawn over the part's .svg, or over the cut lines on their plate, is in its place. Refused where there is no material; a .png shows it in yellow
     #[arg(long, value_name = "FILE.svg")]
     pub(super) engrave: Option<PathBuf>,
 }
@@ -92,6 +92,15 @@ pub(super) fn say_cuts(laser: Option<&LaserReport>) {
                 );
             }
         }
+    }
+    if let Some(longest) = laser.burnt_limbs.first() {
+        let [x, y] = longest.position_mm;
+        say!(
+            "note: {} limb(s) are narrower than the kerf and burn away, the longest {:.2} mm long and {:.3} mm wide, at ({x:.1}, {y:.1}) mm; they hold nothing; scale the part up, or use a finer kerf, to keep them",
+            laser.burnt_limbs.len(),
+            longest.length_mm,
+            longest.width_mm
+        );
     }
     if let Some(largest) = laser.filled_bays.first() {
         let [x, y] = largest.position_mm;

@@ -2,7 +2,8 @@
 //!
 //! Standard output carries only what was asked for; messages and the progress bar, which shows on a terminal
 //! only, go to standard error. Exit codes: 0 done, 2 wrong input or arguments, 3 constraints that cannot be
-//! met, 4 failed verification, 1 a bug of ours, 130 interrupted.
+//! met, 4 failed verification, 1 a bug of ours; what an interruption ends counts as ended by its signal, which shells
+//! show as 130 (Ctrl-C), 143 (`kill`) or 129 (the terminal closed).
 
 /// Prints a line to standard error; with nobody there to read it, nothing is lost.
 macro_rules! say {
@@ -14,6 +15,7 @@ macro_rules! say {
 
 mod args;
 mod extrude;
+mod interrupt;
 mod laser;
 mod make;
 mod picture;
@@ -35,8 +37,6 @@ pub use args::Arguments;
 
 /// The exit code of a program whose input or arguments are wrong.
 const WRONG_INPUT: u8 = 2;
-/// The exit code of a program that was interrupted from the keyboard.
-const INTERRUPTED: i32 = 130;
 
 /// Runs the program with the process's arguments.
 pub fn main() -> ExitCode {
@@ -47,12 +47,7 @@ pub fn main() -> ExitCode {
             return ExitCode::from(WRONG_INPUT);
         }
     };
-    // Without a handler an interruption still ends the program, only a temporary file may stay behind.
-    let _ = ctrlc::set_handler(|| {
-        progress::clear();
-        crate::export::remove_staged();
-        std::process::exit(INTERRUPTED);
-    });
+    interrupt::leave_nothing_behind();
     // A panic has said where it happened; the exit code says that it is ours.
     match std::panic::catch_unwind(|| run::run(arguments)) {
         Err(_) => {

@@ -8,7 +8,7 @@ use clap_complete::Shell;
 
 use super::args::Arguments;
 use super::run::CliError;
-use crate::export::{persist_all, stage};
+use crate::export::{ExportError, persist_all, stage};
 use crate::job::JobError;
 
 #[derive(Debug, Args)]
@@ -20,7 +20,7 @@ pub(super) struct CompletionsArguments {
 
 #[derive(Debug, Args)]
 pub(super) struct ManArguments {
-    /// Write a page for every command into this folder [default: the page of the program, on standard output]
+    /// Write a page for every command into this folder, which is made if there is none [default: the page of the program, on standard output]
     #[arg(long, value_name = "FOLDER")]
     folder: Option<std::path::PathBuf>,
 }
@@ -32,7 +32,7 @@ pub(super) fn completions(arguments: &CompletionsArguments) -> Result<(), CliErr
     print(&script)
 }
 
-/// Prints the manual page of the program, or writes those of all commands into a folder.
+/// Prints the manual page of the program, or writes those of all commands into a folder, which is made if there is none.
 pub(super) fn man(arguments: &ManArguments) -> Result<(), CliError> {
     // Commands know their whole names and the options of all only when it is built.
     let mut program = Arguments::command();
@@ -45,6 +45,8 @@ pub(super) fn man(arguments: &ManArguments) -> Result<(), CliError> {
 
 fn write_pages(program: &clap::Command, folder: &Path) -> Result<(), CliError> {
     let commands = program.get_subcommands().filter(|command| command.get_name() != "help");
+    std::fs::create_dir_all(folder)
+        .map_err(|source| JobError::from(ExportError::Write { path: folder.to_owned(), source }))?;
     let mut staged = Vec::new();
     for command in std::iter::once(program).chain(commands) {
         let name = command.get_display_name().unwrap_or(command.get_name());

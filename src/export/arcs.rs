@@ -51,7 +51,12 @@ fn close_by_line(start: DVec2, segments: &mut Vec<Segment>, tolerance: Option<f6
     let middle = rounding.round(arc.at(t), tolerance);
     if let Some(shorter) = rounded_arc(before, middle, (0.25 * t * arc.turn()).tan(), tolerance) {
         segments.pop();
-        segments.extend([Segment::Arc(middle, shorter.bulge), Segment::Line(to)]);
+        // What is left may be so flat that no digit of its bulge matters, and an arc without one has no radius.
+        segments.push(match shorter.bulge {
+            0.0 => Segment::Line(middle),
+            bulge => Segment::Arc(middle, bulge),
+        });
+        segments.push(Segment::Line(to));
     }
 }
 

@@ -107,6 +107,23 @@ pub enum ExportError {
         /// The system's reason.
         source: io::Error,
     },
+    /// The system refused one of several files, and others could not be taken back.
+    #[error(
+        "cannot write {}: {source}; {}. Of the same run these were written and could not be taken back: {}",
+        path.display(), remedy(source), list(standing)
+    )]
+    Partly {
+        /// The name as it was given.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+        /// The files that stand, each of them whole.
+        standing: Vec<PathBuf>,
+    },
+}
+
+fn list(paths: &[PathBuf]) -> String {
+    paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ")
 }
 
 impl ExportError {
@@ -125,6 +142,7 @@ fn remedy(error: &io::Error) -> &'static str {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
             "free some space, or give another directory"
         }
+        io::ErrorKind::FileTooLarge => "allow larger files (ulimit -f), or give a directory that holds them",
         _ => "try another directory",
     }
 }

@@ -2,8 +2,10 @@
 //!
 //! Bytes go to a temporary file beside their destination; when every output of a run is there (and was read
 //! again and verified), all are renamed. A rename within a directory replaces the old file at once, so no
-//! reader ever sees half of one. A [`Staged`] that is dropped takes its temporary file with it; for a run
-//! that is interrupted, [`remove_staged`] does.
+//! reader ever sees half of one; and as the bytes are on the disk before it, neither does one after a power cut.
+//! Several files are renamed one after the other: where one fails, those before it get back what they had replaced.
+//! A [`Staged`] that is dropped takes its temporary file with it; for a run that is interrupted, [`remove_staged`]
+//! does.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -43,15 +45,23 @@ impl Staged {
         self.temporary.as_deref().unwrap_or(&self.destination)
     }
 
-    fn persist(mut self) -> Result<(), ExportError> {
+    /// Renames it. The registry is that of the caller, who holds it.
+    fn persist(mut self, registry: &mut BTreeSet<PathBuf>) -> Result<(), ExportError> {
         let Some(temporary) = self.temporary.take() else { return Ok(()) };
-        // Held over the rename, so that an interruption either finds the temporary name or nothing to do.
-        let mut registry = registry();
-        let name = temporary.to_path_buf();
-        let renamed = temporary.persist(&self.destination);
-        registry.remove(&name);
+        registry.remove(&*temporary);
         // On failure the error gives the temporary file back, which removes it.
-        renamed.map_err(|failed| ExportError::write(&self.destination, failed.error))
+        temporary
+            .persist(&self.destination)
+            .map_err(|failed| ExportError::write(&self.destination, failed.error))
+    }
+}
+
+impl Staged {
+    /// Removes it, for one who holds the registry.
+    fn discard(mut self, registry: &mut BTreeSet<PathBuf>) {
+        if let Some(temporary) = self.temporary.take() {
+            registry.remove(&*temporary);
+        }
     }
 }
 
@@ -66,7 +76,8 @@ impl Drop for Staged {
 /// Writes `bytes` beside `path` under a temporary name.
 ///
 /// The permissions are those of any new file (by the umask), and a symbolic link is followed, as if the file
-/// had been written in place.
+/// had been written in place. The bytes are on the disk on return: otherwise a power cut soon after the rename could leave an
+/// empty file in the place of an old one.
 ///
 /// # Errors
 /// [`ExportError::NotAFile`] when `path` names a directory or a device, [`ExportError::Write`] when the
@@ -87,7 +98,8 @@ pub fn stage(path: &Path, bytes: &[u8]) -> Result<Staged, ExportError> {
         made.map_err(|error| ExportError::write(path, reason.map_or(error, io::Error::from_raw_os_error)))?;
     registry.insert(file.path().to_owned());
     drop(registry);
-    let written = file.write_all(bytes).and_then(|()| file.flush());
+    // Through the file itself, as errors of the wrapper tell of the temporary name.
+    let written = file.as_file_mut().write_all(bytes).and_then(|()| file.as_file().sync_data());
     // From here on, every way out removes the file.
     let staged = Staged { destination, temporary: Some(file.into_temp_path()) };
     written.map_err(|error| ExportError::write(path, error))?;
@@ -131,23 +143,84 @@ fn directory_of(file: &Path) -> &Path {
     }
 }
 
-/// Gives all files their names, in order.
+/// Gives all files their names, in order; or none of them.
+///
+/// An interruption comes before the first of them or after the last.
 ///
 /// # Errors
-/// [`ExportError::Write`] names the file that could not be renamed; those before it have their names, those
-/// after it are removed. As everything else was checked before, this takes a change of the directory
-/// meanwhile.
+/// [`ExportError::Write`] names the file that could not be renamed: then none has its name, and what had been there
+/// before is there again. As everything else was checked before, this takes a change of the directory meanwhile.
+/// [`ExportError::Partly`] when moreover some could not be put back, as on a file system without hard links, and says which.
 pub fn persist_all(files: Vec<Staged>) -> Result<(), ExportError> {
-    files.into_iter().try_for_each(Staged::persist)
+    // Held until all is done or undone.
+    let mut registry = registry();
+    let mut done = Vec::new();
+    let last = files.len().saturating_sub(1);
+    let mut fault = None;
+    for (i, file) in files.into_iter().enumerate() {
+        if fault.is_some() {
+            // Dropping it would wait for the registry.
+            file.discard(&mut registry);
+            continue;
+        }
+        // After the last one nothing can fail.
+        let before = if i < last { Before::of(&file.destination) } else { Before::Nothing };
+        let destination = file.destination.clone();
+        match file.persist(&mut registry) {
+            Ok(()) => done.push((destination, before)),
+            Err(error) => fault = Some(error),
+        }
+    }
+    let Some(error) = fault else { return Ok(()) };
+    let stands = |(path, before): (PathBuf, Before)| (!before.restore(&path)).then_some(path);
+    let standing: Vec<PathBuf> = done.into_iter().filter_map(stands).collect();
+    match (standing.is_empty(), error) {
+        (false, ExportError::Write { path, source }) => Err(ExportError::Partly { path, source, standing }),
+        (_, error) => Err(error),
+    }
 }
 
-/// Removes every temporary file of this process, for a signal handler that ends it. A file that is being
-/// renamed is waited for.
+/// What was under a name before a file took it.
+enum Before {
+    Nothing,
+    /// The old file, under a second name that goes when this is dropped.
+    Old(TempPath),
+    /// A file that cannot have two names.
+    Lost,
+}
+
+impl Before {
+    fn of(destination: &Path) -> Self {
+        if !destination.exists() {
+            return Self::Nothing;
+        }
+        let link = |name: &Path| fs::hard_link(destination, name);
+        match Builder::new().prefix(".openwork-").suffix(".old").make_in(directory_of(destination), link) {
+            Ok(old) => Self::Old(old.into_temp_path()),
+            Err(_) => Self::Lost,
+        }
+    }
+
+    /// Whether it is there again.
+    fn restore(self, destination: &Path) -> bool {
+        match self {
+            Self::Nothing => fs::remove_file(destination).is_ok(),
+            Self::Old(old) => old.persist(destination).is_ok(),
+            Self::Lost => false,
+        }
+    }
+}
+
+/// Removes every temporary file of this process, for a signal handler that is about to end it: from then on no file is
+/// begun and none gets its name. Files that are being renamed are waited for.
 pub fn remove_staged() {
-    for path in std::mem::take(&mut *registry()) {
+    let mut registry = registry();
+    for path in std::mem::take(&mut *registry) {
         // Nobody is left to hear of a failure.
         let _ = fs::remove_file(path);
     }
+    // Never released: the rest of the program must not begin another file while it ends.
+    std::mem::forget(registry);
 }
 
 #[cfg(test)]
@@ -197,6 +270,31 @@ mod tests {
         let error = persist_all(staged).unwrap_err();
         assert!(error.to_string().contains("a.svg"), "{error}");
         assert_eq!(names(room.path()), ["a.svg"]);
+    }
+
+    #[test]
+    fn a_failed_rename_undoes_those_before_it() {
+        let room = tempfile::tempdir().unwrap();
+        let [old, new, taken, after] = ["a.svg", "b.svg", "c.svg", "d.svg"].map(|n| room.path().join(n));
+        fs::write(&old, "old").unwrap();
+        let staged = [&old, &new, &taken, &after].map(|path| stage(path, b"new").unwrap());
+        fs::create_dir(&taken).unwrap();
+        let error = persist_all(staged.into()).unwrap_err();
+        assert!(matches!(&error, ExportError::Write { path, .. } if *path == taken), "{error}");
+        assert_eq!(names(room.path()), ["a.svg", "c.svg"]);
+        assert_eq!(fs::read(&old).unwrap(), b"old");
+    }
+
+    #[test]
+    fn what_cannot_be_put_back_is_named() {
+        let room = tempfile::tempdir().unwrap();
+        let old = room.path().join("a.svg");
+        fs::write(&old, "old").unwrap();
+        assert!(!Before::Lost.restore(&old));
+        let source = io::ErrorKind::PermissionDenied.into();
+        let error = ExportError::Partly { path: "b.svg".into(), source, standing: vec![old] };
+        let message = error.to_string();
+        assert!(message.contains("cannot write b.svg") && message.contains("a.svg"), "{message}");
     }
 
     #[test]

@@ -10,7 +10,7 @@
 use glam::DVec2;
 use thiserror::Error;
 
-use super::limbs::thin_limb;
+use super::limbs::refused_limb;
 use crate::planar::{Contour, FillRule, Grid, GridError, GridPoint, Part, Region, RegionError};
 
 /// Room between the ink and the frame that bounds the gaps, in kerfs: less, and the frame would be in the way.
@@ -102,8 +102,8 @@ pub fn compensated(region: &Region, kerf_mm: f64, chord_mm: f64) -> Result<Regio
         let (position_mm, width_mm) = first_loss(&ink, radius_mm, chord_mm);
         return Err(KerfError::Feature { position_mm, width_mm, kerf_mm });
     }
-    if let Some(limb) = thin_limb(&ink, kerf_mm, chord_mm) {
-        let (position_mm, width_mm) = (limb.position_mm, limb.width_mm);
+    if let Some(limb) = refused_limb(&ink, kerf_mm, chord_mm) {
+        let (position_mm, width_mm) = (DVec2::from_array(limb.position_mm), limb.width_mm);
         return Err(KerfError::Feature { position_mm, width_mm, kerf_mm });
     }
     let frame = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];

@@ -9,7 +9,7 @@
 //! Before that, bridges may give the region other counts ([`bridge()`]), and what is too thin or too narrow for a machine
 //! ([`Process`]) may be mended ([`enforce()`], [`enforce_in_box`]). For a beam instead of a printer, contours make room for the kerf
 //! ([`compensated`]), and the part lies on a plate or is carved out of it ([`on_sheet`], [`carved`]). What a machine will make nothing of is found
-//! before it does ([`filled_bays`], [`thin_everywhere`], [`smaller_than`]).
+//! before it does ([`filled_bays`], [`burnt_limbs`], [`thin_everywhere`], [`smaller_than`]).
 //!
 //! Walls may be bevelled or sloped ([`raise()`]), the number of triangles limited ([`raise_within`]), and the part turned
 //! to fit a printer ([`Bed`]).
@@ -43,6 +43,7 @@ pub use bridge::{Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts
 pub use enforce::{Change, EnforceError, EnforceOptions, Enforced, TIP, enforce};
 pub use in_box::{Pressed, enforce_in_box};
 pub use kerf::{KerfError, check_kerf, compensated};
+pub use limbs::{BurntLimb, burnt_limbs};
 pub use limit::{Limited, raise_within};
 pub use material::{Material, MaterialReport};
 pub use process::{CUT_COLOUR, ENGRAVE_COLOUR, Process, table as process_table};

@@ -12,13 +12,19 @@ const YIELD_STEPS: f64 = 4.0;
 /// (this is 0.06 micrometres at 64 mm).
 const SHORTEST_EDGE_STEPS: i64 = 16;
 
+/// A vertex that makes with its neighbours a triangle of less area than this, in square millimetres, is left out if the
+/// counts allow, as a cap, or a quarter of it a roof, may have a facet there. Programs take facets of less than a fifth of it for none.
+/// More, and it would show first in parts of a few hundredths of a millimetre.
+const FLAT_MM2: f64 = 5e-10;
+
 /// Room for the yield, which may pass the power of two that the extent just fits: a part of the extent.
 pub(super) const YIELD_ROOM: f64 = 1e-6;
 
 /// `region` with every coordinate exact in `f32` and the same components and holes.
 ///
 /// A region that is exact already is returned as it is. Otherwise every vertex goes to the nearest point of
-/// [`Grid::exact_in_f32`] for the region's extent (3.8e-6 mm at 64 mm), and edges of a few steps go. Where that makes contours cross or
+/// [`Grid::exact_in_f32`] for the region's extent (3.8e-6 mm at 64 mm), and edges of a few steps
+/// and bends that are nearly none go. Where that makes contours cross or
 /// touch, the region is filled anew; where that joins or severs ink, all ink yields by a few steps, or all
 /// gaps do. Each is accepted only if no component and no hole came or went.
 ///
@@ -62,20 +68,38 @@ enum Attempt {
     Changed(FabricateError),
 }
 
-/// Snapped without very short edges, or with them where they are needed.
+/// What a path is rid of, in steps of its grid.
+#[derive(Debug, Clone, Copy)]
+struct Trifles {
+    /// Edges shorter than this.
+    edge: i64,
+    /// Bends of less than this, as twice the area of the triangle with both neighbours.
+    doubled_area: i128,
+}
+
+impl Trifles {
+    const NONE: Self = Self { edge: 0, doubled_area: 0 };
+
+    fn on(grid: Grid) -> Self {
+        let step_mm2 = grid.step_mm() * grid.step_mm();
+        Self { edge: SHORTEST_EDGE_STEPS, doubled_area: (2.0 * FLAT_MM2 / step_mm2).ceil() as i128 }
+    }
+}
+
+/// Snapped without very short edges and very flat bends, or with them where they are needed.
 fn snap(region: &Region, grid: Grid) -> Result<Attempt, FabricateError> {
-    match snap_with_edges(region, grid, SHORTEST_EDGE_STEPS)? {
-        Attempt::Changed(_) => snap_with_edges(region, grid, 0),
+    match snap_without(region, grid, Trifles::on(grid))? {
+        Attempt::Changed(_) => snap_without(region, grid, Trifles::NONE),
         kept => Ok(kept),
     }
 }
 
-fn snap_with_edges(region: &Region, grid: Grid, shortest: i64) -> Result<Attempt, FabricateError> {
+fn snap_without(region: &Region, grid: Grid, trifles: Trifles) -> Result<Attempt, FabricateError> {
     let mut paths = Vec::new();
     let mut contours = Vec::new();
     let mut fault = None;
     for contour in region.contours() {
-        let path = snapped(contour, region.grid(), grid, shortest)?;
+        let path = snapped(contour, region.grid(), grid, trifles)?;
         match Contour::new(path.clone()) {
             Some(contour) => contours.push(contour),
             None => fault = fault.or(Some(grid.to_mm(path[0]))),
@@ -105,17 +129,41 @@ fn snap_with_edges(region: &Region, grid: Grid, shortest: i64) -> Result<Attempt
     }))
 }
 
-/// The contour's points on the other grid, less those within `shortest` steps of the one before.
-fn snapped(contour: &Contour, from: Grid, to: Grid, shortest: i64) -> Result<Vec<GridPoint>, FabricateError> {
+/// The contour's points on the other grid, without trifles.
+fn snapped(
+    contour: &Contour,
+    from: Grid,
+    to: Grid,
+    trifles: Trifles,
+) -> Result<Vec<GridPoint>, FabricateError> {
     let mut path: Vec<GridPoint> = Vec::with_capacity(contour.points().len());
     for &p in contour.points() {
         let p = to.snap(from.to_mm(p))?;
-        let near = |q: &GridPoint| (p.x - q.x).abs().max((p.y - q.y).abs()) < shortest;
+        let near = |q: &GridPoint| (p.x - q.x).abs().max((p.y - q.y).abs()) < trifles.edge;
         if !path.last().is_some_and(near) {
             path.push(p);
         }
     }
-    Ok(path)
+    Ok(without_flat_bends(path, trifles.doubled_area))
+}
+
+/// The closed path without vertices that are nearly between their neighbours. Those that are quite between them stay: no
+/// facet has them for three corners.
+fn without_flat_bends(path: Vec<GridPoint>, doubled_area: i128) -> Vec<GridPoint> {
+    let n = path.len();
+    let mut kept: Vec<GridPoint> = Vec::with_capacity(n);
+    for (i, &p) in path.iter().enumerate() {
+        let before = *kept.last().unwrap_or(&path[n - 1]);
+        // The last vertex is followed by the first one that is left.
+        let after = path.get(i + 1).or(kept.first()).copied().unwrap_or(p);
+        let from_before = |q: GridPoint| (i128::from(q.x - before.x), i128::from(q.y - before.y));
+        let (u, v) = (from_before(p), from_before(after));
+        let doubled = (u.0 * v.1 - u.1 * v.0).abs();
+        if doubled == 0 || doubled >= doubled_area {
+            kept.push(p);
+        }
+    }
+    kept
 }
 
 pub(super) fn same_counts(a: &Region, b: &Region) -> bool {
@@ -138,6 +186,19 @@ mod tests {
         let snap = |&(x, y): &(f64, f64)| grid.snap(DVec2::new(x, y)).unwrap();
         let paths: Vec<Vec<GridPoint>> = paths.iter().map(|p| p.iter().map(snap).collect()).collect();
         Region::fill(grid, &paths, FillRule::EvenOdd)
+    }
+
+    #[test]
+    fn a_bend_of_nearly_nothing_is_left_out() {
+        let at = |points: &[(i64, i64)]| -> Vec<GridPoint> {
+            points.iter().map(|&(x, y)| GridPoint::new(x, y)).collect()
+        };
+        // The second point is less than a step off the line between its neighbours, the fifth on it; the last is nearly
+        // between its neighbour and the first.
+        let path = at(&[(0, 0), (20, 6), (41, 12), (50, 400), (25, 400), (0, 400), (-90, 100), (-45, 51)]);
+        let kept = at(&[(0, 0), (41, 12), (50, 400), (25, 400), (0, 400), (-90, 100)]);
+        assert_eq!(without_flat_bends(path.clone(), 100), kept);
+        assert_eq!(without_flat_bends(path.clone(), 0), path);
     }
 
     #[test]

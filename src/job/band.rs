@@ -238,6 +238,7 @@ impl Band {
             self.part.seams_mm.iter_mut().flatten().for_each(|p| *p = pressed.moved(*p));
             if let Some(bridges) = &mut self.report.bridges {
                 bridges.press(&pressed);
+                self.report.made.certificate.move_bridges(&bridges.bridges);
             }
         }
         let made = &mut self.report.made;

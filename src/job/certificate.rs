@@ -189,9 +189,7 @@ impl Certificate {
                 BridgeKind::Open => ("slit", 0, -1),
                 BridgeKind::Split => ("slit", 1, 0),
             };
-            let middle = |axis: usize| (bridge.from_mm[axis] + bridge.to_mm[axis]) / 2.0;
-            let position_um = [0, 1].map(|axis| (middle(axis) * 1e3).round() as i64);
-            let step = BridgeStep { kind, components, holes, position_um };
+            let step = BridgeStep { kind, components, holes, position_um: middle_um(bridge) };
             self.bridges.extend(std::iter::repeat_n(step, bridge.changes));
         }
         self.result = ResultCounts {
@@ -200,6 +198,14 @@ impl Certificate {
             euler: counts.components as i64 - counts.holes as i64,
             closed_pattern,
         };
+    }
+
+    /// Moves bridges to where these are now: the same ones, in the same order.
+    pub(super) fn move_bridges(&mut self, bridges: &[Bridge]) {
+        let places = bridges.iter().flat_map(|bridge| std::iter::repeat_n(middle_um(bridge), bridge.changes));
+        for (step, position_um) in self.bridges.iter_mut().zip(places) {
+            step.position_um = position_um;
+        }
     }
 
     /// The certificate of a sequence whose pieces add up to `planned`, before its files exist.
@@ -264,6 +270,11 @@ impl Certificate {
         }
         self.sha256 = sha256(value.to_string().as_bytes());
     }
+}
+
+/// The middle of a bridge on the page, in micrometres.
+fn middle_um(bridge: &Bridge) -> [i64; 2] {
+    [0, 1].map(|axis| ((bridge.from_mm[axis] + bridge.to_mm[axis]) / 2.0 * 1e3).round() as i64)
 }
 
 impl PieceDescriptor {

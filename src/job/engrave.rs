@@ -1,7 +1,7 @@
 //! What is engraved on a part before it is cut: the outlines of another drawing.
 //!
-//! The drawing lies on the part's own page, the lower left corners of both together, so that it can be drawn over the
-//! part's SVG. Its ink is read like an exemplar's; what is engraved are the outlines of it, closed and each once, as the
+//! The drawing lies on the part's own page, or on the plate if there is one, the lower left corners of both together, so that
+//! it can be drawn over the part's SVG, or over the file of cut lines. Its ink is read like an exemplar's; what is engraved are the outlines of it, closed and each once, as the
 //! part itself is cut. All of it must lie on material that is kept, and none along a cut. Excluded: filling areas by hatching them, which the
 //! programs of lasers do.
 
@@ -33,17 +33,16 @@ impl Engraving {
         Ok(Self { region: drawing.region().clone(), file, input })
     }
 
-    /// What is engraved on `kept`, where the part's page was moved by `shift`, on `grid`. It may reach beyond it by
-    /// `chord_mm`, and not onto `fallen`, which is a part of it.
+    /// What is engraved on `kept`, on `grid`. It may reach beyond it by `chord_mm`, and not onto `fallen`, which is a part
+    /// of it.
     ///
     /// # Errors
-    /// [`JobError::Option`] names a place on the part's page where there is no material, or where it is cut along the same
+    /// [`JobError::Option`] names a place where there is no material, or where it is cut along the same
     /// line.
     pub(super) fn on(
         &self,
         kept: &Region,
         fallen: Option<&Region>,
-        shift: DVec2,
         grid: Grid,
         chord_mm: f64,
     ) -> Result<Region, JobError> {
@@ -51,32 +50,29 @@ impl Engraving {
         let points = || self.region.contours().flat_map(|contour| contour.points());
         let on_page = |p| self.region.grid().to_mm(p);
         // What is far away has no place on the part's grid.
-        let is_beyond = |p: &DVec2| {
-            let p = *p + shift;
-            p.cmplt(low - chord_mm).any() || p.cmpgt(high + chord_mm).any()
-        };
+        let is_beyond = |p: &DVec2| p.cmplt(low - chord_mm).any() || p.cmpgt(high + chord_mm).any();
         if let Some(place) = points().map(|&p| on_page(p)).find(is_beyond) {
             return Err(self.misses(place));
         }
-        let paths = |region: &Region, shift: DVec2| -> Result<Vec<Vec<GridPoint>>, JobError> {
-            let on_grid = region.placed(grid, |p| p + shift).map_err(FabricateError::from)?;
+        let paths = |region: &Region| -> Result<Vec<Vec<GridPoint>>, JobError> {
+            let on_grid = region.placed(grid, |p| p).map_err(FabricateError::from)?;
             Ok(on_grid.contours().map(|contour| contour.points().to_vec()).collect())
         };
-        let engraved = Region::fill(grid, &paths(&self.region, shift)?, FillRule::Positive);
-        let mut missing = paths(&engraved, DVec2::ZERO)?;
+        let engraved = Region::fill(grid, &paths(&self.region)?, FillRule::Positive);
+        let mut missing = paths(&engraved)?;
         if let Some(fallen) = fallen {
-            missing.extend(paths(fallen, DVec2::ZERO)?);
+            missing.extend(paths(fallen)?);
         }
-        for mut path in paths(&kept.offset(chord_mm, chord_mm), DVec2::ZERO)? {
+        for mut path in paths(&kept.offset(chord_mm, chord_mm))? {
             path.reverse();
             missing.push(path);
         }
         if let Some(beyond) = Region::fill(grid, &missing, FillRule::Positive).contours().next() {
-            return Err(self.misses(grid.to_mm(beyond.points()[0]) - shift));
+            return Err(self.misses(grid.to_mm(beyond.points()[0])));
         }
         match along_cuts(&engraved, kept, chord_mm) {
             None => Ok(engraved),
-            Some(place) => Err(self.burns(place - shift)),
+            Some(place) => Err(self.burns(place)),
         }
     }
 
@@ -98,7 +94,7 @@ impl Engraving {
                 "{} has ink where there is no material, at ({:.2}, {:.2}) mm",
                 self.file, place.x, place.y
             ),
-            wanted: "draw it over the part, from the lower left corner of the part's own page".to_owned(),
+            wanted: "draw it over the part, from the lower left corner of the part's own page, or of the plate with --sheet".to_owned(),
         }
     }
 }
@@ -133,10 +129,10 @@ mod tests {
     const FRAME: [(i64, i64, i64, i64); 2] = [(5, 5, 50, 30), (20, 10, 20, 10)];
 
     #[test]
-    fn what_lies_on_material_is_engraved_where_the_part_is() {
-        let engraving = engraving(&[(4, 4, 10, 20), (6, 6, 4, 4)]);
+    fn what_lies_on_material_is_engraved() {
+        let engraving = engraving(&[(6, 7, 10, 20), (8, 9, 4, 4)]);
         let frame = region(&FRAME);
-        let engraved = engraving.on(&frame, None, DVec2::new(2.0, 3.0), frame.grid(), 0.01).unwrap();
+        let engraved = engraving.on(&frame, None, frame.grid(), 0.01).unwrap();
         let (low, high) = engraved.bounds_mm().unwrap();
         assert!(low.distance(DVec2::new(6.0, 7.0)) < 1e-6 && high.distance(DVec2::new(16.0, 27.0)) < 1e-6);
         assert_eq!((engraved.components(), engraved.holes()), (1, 1));
@@ -145,35 +141,30 @@ mod tests {
     #[test]
     fn what_is_engraved_along_a_cut_is_refused_with_its_place() {
         let frame = region(&FRAME);
-        let on = |of: &[(i64, i64, i64, i64)]| {
-            engraving(of).on(&frame, None, DVec2::new(1.0, 1.0), frame.grid(), 0.01)
-        };
-        // The frame itself, and a box at the left side of its hole, which is at x = 19 on the part's own page.
-        for of in [&[(4, 4, 50, 30), (19, 9, 20, 10)][..], &[(15, 12, 4, 2)]] {
+        let on = |of: &[(i64, i64, i64, i64)]| engraving(of).on(&frame, None, frame.grid(), 0.01);
+        // The frame itself, and a box at the left side of its hole.
+        for of in [&FRAME[..], &[(16, 13, 4, 2)]] {
             let error = on(of).unwrap_err().to_string();
             assert!(
                 error.contains("name.svg is engraved along a cut, at (") && error.contains("; end"),
                 "{error}"
             );
         }
-        assert!(on(&[(15, 12, 4, 2)]).unwrap_err().to_string().contains("at (19.00, 13.00) mm"));
-        assert!(on(&[(15, 12, 3, 2)]).is_ok());
+        assert!(on(&[(16, 13, 4, 2)]).unwrap_err().to_string().contains("at (20.00, 14.00) mm"));
+        assert!(on(&[(16, 13, 3, 2)]).is_ok());
     }
 
     #[test]
     fn what_misses_the_material_is_refused_with_its_place() {
         let frame = region(&FRAME);
         let message = |of: &[(i64, i64, i64, i64)], fallen: Option<&Region>| {
-            engraving(of)
-                .on(&frame, fallen, DVec2::new(1.0, 1.0), frame.grid(), 0.01)
-                .unwrap_err()
-                .to_string()
+            engraving(of).on(&frame, fallen, frame.grid(), 0.01).unwrap_err().to_string()
         };
-        // Over the hole of the frame, which begins at (19, 9) on the part's own page.
-        let over = message(&[(10, 12, 20, 4)], None);
-        assert!(over.contains("name.svg") && over.contains("at (19.01, 12.00)"), "{over}");
+        // Over the hole of the frame, which begins at (20, 10).
+        let over = message(&[(11, 13, 20, 4)], None);
+        assert!(over.contains("name.svg") && over.contains("at (20.01, 13.00)"), "{over}");
         assert!(message(&[(80, 12, 5, 5)], None).contains("at (80.00, 12.00)"));
         let fallen = region(&[(42, 10, 8, 8)]);
-        assert!(message(&[(43, 11, 2, 2)], Some(&fallen)).contains("at (43.00, 11.00)"));
+        assert!(message(&[(44, 12, 2, 2)], Some(&fallen)).contains("at (44.00, 12.00)"));
     }
 }

@@ -19,7 +19,7 @@ use super::picture::PictureOptions;
 use super::report::InputReport;
 use super::stage::{Clock, Stage};
 use crate::export::{self, Curves, CutLines, CutNumbers, DxfVersion, Layer, LayerColours, Marks, SvgOptions};
-use crate::fabricate::{self, Counts, FabricateError, FallenPiece, FilledBay, SheetSize};
+use crate::fabricate::{self, BurntLimb, Counts, FabricateError, FallenPiece, FilledBay, SheetSize};
 use crate::planar::{GridPoint, Region, Tolerances};
 use crate::verify::{self, CutReport, Expected, Mismatch, NarrowPlaces};
 
@@ -46,7 +46,7 @@ pub struct LaserOptions {
     pub sheet: Option<SheetSize>,
     /// Whether the part is cut out of the plate as a sign: what is left of the plate is kept, not the part.
     pub carve: bool,
-    /// A drawing on the part's page whose outlines are engraved on it.
+    /// A drawing whose outlines are engraved: on the part's page, or on the plate's if there is one.
     pub engrave: Option<PathBuf>,
     /// The colours of the layers.
     pub colours: LayerColours,
@@ -139,6 +139,9 @@ pub struct LaserReport {
     pub holes: usize,
     /// When the part was carved out of a plate: the pieces of the plate that fall out.
     pub falls_out: Option<Vec<FallenPiece>>,
+    /// Limbs of what is kept that are narrower than the kerf, so that they burn away, the longest first. Longer ones than
+    /// these are refused.
+    pub burnt_limbs: Vec<BurntLimb>,
     /// Bays of what is kept that the beam does not get into, so that they stay filled, the largest first.
     pub filled_bays: Vec<FilledBay>,
     /// The drawing that is engraved, if there is one.
@@ -211,10 +214,15 @@ impl Cutting {
             None => Ok(Vec::new()),
         };
         let filled_bays = filled_bays.map_err(FabricateError::from)?;
+        let burnt_limbs = match options.kerf_mm {
+            Some(kerf_mm) => fabricate::burnt_limbs(&kept, cut.grid(), kerf_mm, curve_chord_mm),
+            None => Ok(Vec::new()),
+        };
+        let burnt_limbs = burnt_limbs.map_err(FabricateError::from)?;
         let shift = options.sheet.map_or(DVec2::ZERO, |sheet| fabricate::shift_onto(part, sheet));
         let read = |file: &PathBuf| Engraving::read(file, chord_mm - curve_chord_mm);
         let engraving = options.engrave.as_ref().map(read).transpose()?;
-        let laid = |of: &Engraving| of.on(&kept, fallen.as_ref(), shift, cut.grid(), chord_mm);
+        let laid = |of: &Engraving| of.on(&kept, fallen.as_ref(), cut.grid(), chord_mm);
         let engraved = engraving.as_ref().map(laid).transpose()?;
         let page_mm = options.sheet.map_or(page_mm, |sheet| DVec2::new(sheet.width_mm, sheet.height_mm));
         let plate = match options.sheet.filter(|_| !options.carve) {
@@ -244,6 +252,7 @@ impl Cutting {
             components,
             holes,
             falls_out,
+            burnt_limbs,
             filled_bays,
             engraved: engraving.map(|engraving| engraving.input),
             numbers: lines.numbers(),
