@@ -17,7 +17,7 @@ use i_triangle::i_overlay::i_float::int::point::IntPoint;
 use i_triangle::int::custom::IntCustomTriangulatable;
 use i_triangle::int::triangulation::RawIntTriangulation;
 use i_triangle::int::validation::Validation;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 use crate::planar::{GridPoint, Part};
@@ -35,10 +35,27 @@ pub(super) fn triangulate(part: &Part) -> Result<Vec<[u32; 3]>, &'static str> {
     let vertices: Vec<GridPoint> = part.contours().flat_map(|c| c.points()).copied().collect();
     let triangles = match flipped(part, &vertices, FLIPS)? {
         Some(triangles) => triangles,
-        None => constrained(part, &vertices)?,
+        None => constrained(part, &vertices, &[])?,
     };
     check(part, &vertices, &triangles)?;
     Ok(triangles)
+}
+
+/// The same with `inner` edges, by the numbers of vertices, among those of the triangles. They cross neither each other nor the
+/// part's outline.
+///
+/// # Errors
+/// What was wrong with the engine's triangles.
+pub(super) fn triangulate_along(part: &Part, inner: &[[u32; 2]]) -> Result<Vec<[u32; 3]>, &'static str> {
+    let vertices: Vec<GridPoint> = part.contours().flat_map(|c| c.points()).copied().collect();
+    let triangles = constrained(part, &vertices, inner)?;
+    check(part, &vertices, &triangles)?;
+    let sides = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let sides: FxHashSet<[u32; 2]> = sides.collect();
+    match inner.iter().all(|edge| sides.contains(edge)) {
+        true => Ok(triangles),
+        false => Err("an inner edge that no triangle has"),
+    }
 }
 
 /// The triangles of i_triangle; `None` when they take more than `limit` flips each.
@@ -94,14 +111,20 @@ fn flip(triangles: &mut [IntTriangle<i64>], t: usize) -> Option<usize> {
 }
 
 /// The triangles of spade. Numbers of the grid of a solid are exact in its floats, and so are its predicates.
-fn constrained(part: &Part, vertices: &[GridPoint]) -> Result<Vec<[u32; 3]>, &'static str> {
-    let mut edges = Vec::with_capacity(vertices.len());
+fn constrained(
+    part: &Part,
+    vertices: &[GridPoint],
+    inner: &[[u32; 2]],
+) -> Result<Vec<[u32; 3]>, &'static str> {
+    let is_inner: FxHashSet<[u32; 2]> = inner.iter().map(|&[a, b]| [a.min(b), a.max(b)]).collect();
+    let mut edges = Vec::with_capacity(vertices.len() + inner.len());
     let mut start = 0;
     for contour in part.contours() {
         let n = contour.points().len();
         edges.extend((0..n).map(|i| [start + i, start + (i + 1) % n]));
         start += n;
     }
+    edges.extend(inner.iter().map(|edge| edge.map(|v| v as usize)));
     let points = vertices.iter().map(|p| Point2::new(p.x as f64, p.y as f64)).collect();
     let mut conflicts = 0;
     let mesh =
@@ -121,7 +144,9 @@ fn constrained(part: &Part, vertices: &[GridPoint]) -> Result<Vec<[u32; 3]>, &'s
         if std::mem::replace(&mut is_seen[face], true) {
             continue;
         }
-        is_ink[face] = is_ink[behind] != entered.is_constraint_edge();
+        let [a, b] = entered.vertices().map(|v| v.index() as u32);
+        let is_outline = entered.is_constraint_edge() && !is_inner.contains(&[a.min(b), a.max(b)]);
+        is_ink[face] = is_ink[behind] != is_outline;
         stack.extend([entered.next(), entered.prev()].map(|edge| edge.rev().fix()));
     }
     let ink = mesh.inner_faces().filter(|face| is_ink[face.index()]);
@@ -251,7 +276,7 @@ mod tests {
         };
         assert_eq!(flipped(&part, &vertices, 0).unwrap(), None);
         let flipped = flipped(&part, &vertices, 1000).unwrap().unwrap();
-        let constrained = constrained(&part, &vertices).unwrap();
+        let constrained = constrained(&part, &vertices, &[]).unwrap();
         assert_eq!(check(&part, &vertices, &flipped), Ok(()));
         assert_eq!(check(&part, &vertices, &constrained), Ok(()));
         let (flipped, constrained) = (sorted(flipped), sorted(constrained));

@@ -14,7 +14,9 @@
 //! Walls may be bevelled or sloped ([`raise()`]), the number of triangles limited ([`raise_within`]), and the part turned
 //! to fit a printer ([`Bed`]).
 //!
-//! Excluded: files, curved fronts. Nothing here knows how the region came to be.
+//! On a curved sheet, as a ring or a helix, back and front are one triangulation that no line of the sheet crosses ([`wrap()`]).
+//!
+//! Excluded: files. Nothing here knows how the region came to be.
 
 mod bays;
 mod bed;
@@ -36,6 +38,7 @@ mod small;
 mod snap;
 mod solid;
 mod workshop;
+mod wrap;
 
 pub use bays::{FilledBay, filled_bays};
 pub use bed::Bed;
@@ -54,6 +57,7 @@ pub use small::{smaller_than, thin_everywhere};
 pub use snap::snapped_to_f32;
 pub use solid::{Shell, Solid, extrude};
 pub use workshop::{Workshop, WorkshopError};
+pub use wrap::{Sheet, wrap};
 
 use glam::DVec2;
 use thiserror::Error;
@@ -167,6 +171,14 @@ pub enum FabricateError {
         found_components: usize,
         /// Holes after snapping.
         found_holes: usize,
+    },
+    /// The ends of a sheet that are joined do not have the same ink.
+    #[error(
+        "the ends of the strip do not meet: ink at ({:.3}, {:.3}) mm has none on the other end", position_mm.x, position_mm.y
+    )]
+    Ends {
+        /// A place on one end, in millimetres.
+        position_mm: DVec2,
     },
     /// The triangulation of a cap is not the cap: a fault of the engine, caught before it reaches a file.
     #[error(
