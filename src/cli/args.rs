@@ -11,7 +11,7 @@ use super::preset::PresetArgs;
 use super::print::PrintArgs;
 use super::shell::{CompletionsArguments, ManArguments};
 use super::values;
-use crate::domain::{CurveSpec, RectSize};
+use crate::domain::{CurveSpec, RectSize, Twist};
 use crate::job::{KeptRange, SlicingChoice, StitchMethod};
 
 /// Ornament that can be made: new pattern from one SVG ornament, with exactly the components and holes you ask
@@ -59,6 +59,9 @@ Examples:
   A bracelet in one piece that closes on itself:
     openwork band vine.svg --along circle:65mm --width 14mm --components 1 --closed-pattern \\
                   -o bracelet.stl -o bracelet.svg
+  A bracelet that stands, a cuff with an opening of 25 mm, and a picture of it:
+    openwork band vine.svg --along ring:65mm --width 14mm --components 1 --closed-pattern -o bracelet.stl
+    openwork band vine.svg --along ring:65mm --gap 25mm --width 20mm --components 1 -o cuff.3mf -o cuff.png --view iso
   A border of 24 cm with a picture of it:
     openwork band scroll.svg --along line:240mm --components 1 -o border.svg -o border.png
   Along a path drawn elsewhere, for a nozzle of 0.4 mm:
@@ -140,9 +143,18 @@ pub(super) struct BandArguments {
     /// The ornament to learn from (SVG)
     pub(super) exemplar: PathBuf,
     /// The curve, which the middle line of the band follows: line:120mm, circle:65mm (its diameter; inside, a flat ring
-    /// measures 65mm less --width), path:FILE.svg or path:FILE.svg#id
+    /// measures 65mm less --width), path:FILE.svg or path:FILE.svg#id. In space, where drawings are the pattern laid flat:
+    /// ring:65mm, a bracelet that stands on a cylinder (its diameter inside), helix:65mm,pitch=20mm,turns=3, and
+    /// points:FILE.csv or points:FILE.obj, a smooth curve through points, closed if the last is the first
     #[arg(long, value_name = "SPEC", value_parser = values::curve)]
     pub(super) along: CurveSpec,
+    /// Leave a ring open, so wide straight across the inside: a cuff
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    pub(super) gap: Option<f64>,
+    /// Turn a band in space about its curve: degrees over the whole length, or a table of places in mm with degrees, as
+    /// 0:0,40:90,120:90
+    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true)]
+    pub(super) twist: Option<Twist>,
     /// The pattern must go all the way round a closed curve
     #[arg(long)]
     pub(super) closed_pattern: bool,

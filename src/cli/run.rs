@@ -16,7 +16,7 @@ use crate::exemplar::{Exemplar, Limits, ReadOptions};
 use crate::export;
 use crate::job::{
     BandBuilder, BandReport, BridgesReport, Choice, DEFAULT_TEMPERATURE, Format, JobError, MadeReport,
-    Output, Quantities, READ_SHARE, SlicingChoice, Target, write_numbered,
+    Output, Quantities, READ_SHARE, SlicingChoice, SpaceOptions, Target, write_numbered,
 };
 use crate::pieces::CostWeights;
 use crate::planar::{Tolerances, TolerancesError};
@@ -197,7 +197,8 @@ fn builder(arguments: &BandArguments) -> Result<BandBuilder, CliError> {
         .closed_pattern(arguments.closed_pattern)
         .choice(choice(arguments)?)
         .contact_sheet(!arguments.no_contact_sheet)
-        .counted(arguments.pattern.report.is_some());
+        .counted(arguments.pattern.report.is_some())
+        .space(SpaceOptions { gap_mm: arguments.gap, twist: arguments.twist.clone() });
     let builder = match arguments.round {
         Some(radius) => builder.round_mm(radius),
         None => builder,

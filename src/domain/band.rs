@@ -62,6 +62,10 @@ impl BandMap {
         let hardest = curve.curvatures().fold(0.0, |k: f64, (_, _, curvature)| k.max(curvature.abs()));
         let sample_mm = (SAMPLE_RADII / hardest).clamp(MIN_SAMPLE_MM, SAMPLE_MM);
         let map = Self { curve, v_range: [v_low_mm, v_high_mm], left, right, squeezes, sample_mm };
+        // A strip that is cut open does not meet itself.
+        if map.curve.is_rolled() {
+            return Ok(map);
+        }
         match first_meeting(&map.borders())? {
             None => Ok(map),
             Some(meeting) => Err(DomainError::Crossing {

@@ -24,6 +24,8 @@ use crate::planar::{Grid, GridError};
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlanarCurve {
     chain: Chain,
+    /// Whether it is a line of which the end is the start.
+    is_rolled: bool,
 }
 
 /// The curve at one place.
@@ -68,6 +70,22 @@ impl PlanarCurve {
         Self::single(arc, diameter_mm, true)
     }
 
+    /// A straight line of which the end is the start: a closed curve in space laid flat. Places along it go round, and the band
+    /// along it is a cylinder cut open.
+    ///
+    /// # Errors
+    /// As [`PlanarCurve::line`].
+    pub fn rolled(length_mm: f64) -> Result<Self, DomainError> {
+        let line = Self::line(length_mm)?;
+        let arcs = line.chain.located_arcs().map(|(_, arc)| *arc).collect::<Vec<_>>();
+        Ok(Self { chain: Chain::new(arcs, true), is_rolled: true })
+    }
+
+    /// Whether it is a line of which the end is the start.
+    pub fn is_rolled(&self) -> bool {
+        self.is_rolled
+    }
+
     fn single(arc: Arc, extent_mm: f64, closed: bool) -> Result<Self, DomainError> {
         if !extent_mm.is_finite() {
             return Err(GridError::NotFinite { x: extent_mm, y: 0.0 }.into());
@@ -78,7 +96,7 @@ impl PlanarCurve {
         if arc.length < MIN_LENGTH_MM {
             return Err(DomainError::TooShort { length_mm: arc.length, minimum_mm: MIN_LENGTH_MM });
         }
-        Ok(Self { chain: Chain::new([arc], closed) })
+        Ok(Self { chain: Chain::new([arc], closed), is_rolled: false })
     }
 
     /// The curve along a path of one subpath in millimetres, y up. It is closed when the path is, or when its
@@ -89,7 +107,7 @@ impl PlanarCurve {
     /// [`DomainError`] when the path is empty, has several subpaths, has coordinates that are not finite or
     /// beyond 100 m, is shorter than 0.1 mm, or has a corner.
     pub fn from_bez_path(path: &BezPath) -> Result<Self, DomainError> {
-        Ok(Self { chain: eased(&chain_of(path)?)? })
+        Ok(Self { chain: eased(&chain_of(path)?)?, is_rolled: false })
     }
 
     /// As [`PlanarCurve::from_bez_path`], but corners are replaced by arcs of at least `radius_mm`, and of
@@ -100,7 +118,7 @@ impl PlanarCurve {
     /// As there, but for corners [`DomainError::Rounding`] where the radius does not fit, and
     /// [`DomainError::RoundRadius`] when it is not a positive number.
     pub fn from_bez_path_rounded(path: &BezPath, radius_mm: f64) -> Result<Self, DomainError> {
-        Ok(Self { chain: eased(&rounded(&chain_of(path)?, radius_mm)?)? })
+        Ok(Self { chain: eased(&rounded(&chain_of(path)?, radius_mm)?)?, is_rolled: false })
     }
 
     /// The length in mm.

@@ -8,7 +8,8 @@ use thiserror::Error;
 
 use super::length::{LengthError, parse_length_mm};
 
-/// A curve by name: `line:120mm`, `circle:65mm` (diameter), `path:FILE.svg` or `path:FILE.svg#id`.
+/// A curve by name. In the plane: `line:120mm`, `circle:65mm` (diameter), `path:FILE.svg` or `path:FILE.svg#id`. In space:
+/// `ring:65mm` and `helix:65mm,pitch=12mm,turns=3` (inner diameters), `points:FILE.csv` or `points:FILE.obj`.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CurveSpec {
     /// A straight line to the right.
@@ -28,6 +29,25 @@ pub enum CurveSpec {
         /// The `id` of the path element; `None` when the file has one path only.
         id: Option<String>,
     },
+    /// A band that stands on a cylinder, its thickness outwards.
+    Ring {
+        /// The diameter of the inside in millimetres, positive.
+        inner_mm: f64,
+    },
+    /// A band that winds around a cylinder.
+    Helix {
+        /// The diameter of the inside in millimetres, positive.
+        inner_mm: f64,
+        /// By how much each turn rises, in millimetres, positive.
+        pitch_mm: f64,
+        /// How often it goes round, positive.
+        turns: f64,
+    },
+    /// A smooth curve through points in space.
+    Points {
+        /// A table of x, y and z in millimetres, or an OBJ with a polyline.
+        file: PathBuf,
+    },
 }
 
 /// A text that names no curve.
@@ -35,7 +55,7 @@ pub enum CurveSpec {
 pub enum CurveSpecError {
     /// The word before the colon is unknown, or there is no colon.
     #[error(
-        "'{text}' names no curve; write line:LENGTH, circle:DIAMETER, path:FILE.svg or path:FILE.svg#id, such as line:120mm"
+        "'{text}' names no curve; write line:LENGTH, circle:DIAMETER, path:FILE.svg or path:FILE.svg#id, such as line:120mm; in space ring:DIAMETER, helix:DIAMETER,pitch=LENGTH,turns=NUMBER or points:FILE.csv"
     )]
     Kind {
         /// What was given.
@@ -60,6 +80,22 @@ pub enum CurveSpecError {
         value_mm: String,
         /// A specification that would work.
         example: &'static str,
+    },
+    /// A helix without its parts.
+    #[error(
+        "'{text}' is no helix: {wrong}; write helix:DIAMETER,pitch=LENGTH,turns=NUMBER, such as helix:65mm,pitch=12mm,turns=3"
+    )]
+    Helix {
+        /// What was given.
+        text: String,
+        /// What is wrong.
+        wrong: String,
+    },
+    /// Points without a file.
+    #[error("'{text}' lacks a file name; write points:FILE.csv or points:FILE.obj")]
+    Points {
+        /// What was given.
+        text: String,
     },
     /// A path without a file name, or with `#` and no id after it.
     #[error("'{text}' lacks {missing}; write path:FILE.svg or path:FILE.svg#id")]
@@ -95,6 +131,32 @@ impl FromStr for CurveSpec {
                 Ok(Self::Circle { diameter_mm: positive(value, "diameter", "circle:65mm")? })
             }
             Some(("path", value)) => path(text, value),
+            Some(("ring", value)) => Ok(Self::Ring { inner_mm: positive(value, "diameter", "ring:65mm")? }),
+            Some(("helix", value)) => {
+                let wrong = |wrong: String| CurveSpecError::Helix { text: text.to_owned(), wrong };
+                let mut parts = value.split(',');
+                let example = "helix:65mm,pitch=12mm,turns=3";
+                let inner_mm = positive(parts.next().unwrap_or_default(), "diameter", example)?;
+                let (mut pitch_mm, mut turns) = (None, None);
+                for part in parts {
+                    match part.trim().split_once('=') {
+                        Some(("pitch", value)) => pitch_mm = Some(positive(value, "pitch", example)?),
+                        Some(("turns", value)) => {
+                            let number =
+                                value.trim().parse().ok().filter(|n: &f64| *n > 0.0 && n.is_finite());
+                            turns = Some(
+                                number.ok_or_else(|| wrong(format!("'{value}' is no number of turns")))?,
+                            );
+                        }
+                        _ => return Err(wrong(format!("'{part}' is neither pitch nor turns"))),
+                    }
+                }
+                let pitch_mm = pitch_mm.ok_or_else(|| wrong("it lacks a pitch".to_owned()))?;
+                let turns = turns.ok_or_else(|| wrong("it lacks its turns".to_owned()))?;
+                Ok(Self::Helix { inner_mm, pitch_mm, turns })
+            }
+            Some(("points", "")) => Err(CurveSpecError::Points { text: text.to_owned() }),
+            Some(("points", file)) => Ok(Self::Points { file: file.into() }),
             _ => Err(CurveSpecError::Kind { text: text.to_owned() }),
         }
     }
@@ -119,6 +181,11 @@ impl fmt::Display for CurveSpec {
         match self {
             Self::Line { length_mm } => write!(f, "line:{length_mm}mm"),
             Self::Circle { diameter_mm } => write!(f, "circle:{diameter_mm}mm"),
+            Self::Ring { inner_mm } => write!(f, "ring:{inner_mm}mm"),
+            Self::Helix { inner_mm, pitch_mm, turns } => {
+                write!(f, "helix:{inner_mm}mm,pitch={pitch_mm}mm,turns={turns}")
+            }
+            Self::Points { file } => write!(f, "points:{}", file.display()),
             Self::Path { file, id: None } => write!(f, "path:{}", file.display()),
             Self::Path { file, id: Some(id) } => write!(f, "path:{}#{id}", file.display()),
         }
@@ -131,8 +198,10 @@ mod tests {
 
     #[test]
     fn what_is_written_reads_back() {
-        for text in ["line:120mm", "circle:65mm", "path:a b.svg", "path:dir/c.svg#curve-1", "path:a#b.svg#c"]
-        {
+        let planar =
+            ["line:120mm", "circle:65mm", "path:a b.svg", "path:dir/c.svg#curve-1", "path:a#b.svg#c"];
+        let spatial = ["ring:65mm", "helix:65mm,pitch=12mm,turns=3.5", "points:a b.csv"];
+        for text in planar.into_iter().chain(spatial) {
             assert_eq!(text.parse::<CurveSpec>().unwrap().to_string(), text);
         }
         assert_eq!("circle:6.5cm".parse(), Ok(CurveSpec::Circle { diameter_mm: 65.0 }));
@@ -163,5 +232,12 @@ mod tests {
         );
         assert!(message("path:").contains("a file name"));
         assert!(message("path:a.svg#").contains("an id after '#'"));
+        assert!(message("helix:65mm,pitch=12mm").contains("it lacks its turns; write helix:"));
+        assert!(message("helix:65mm,turns=2").contains("it lacks a pitch"));
+        assert!(message("helix:65mm,pitch=12mm,turns=0").contains("'0' is no number of turns"));
+        assert!(message("helix:65mm,rise=3").contains("'rise=3' is neither pitch nor turns"));
+        assert!(
+            message("ring:0").contains("the diameter is 0 mm") && message("points:").contains("a file name")
+        );
     }
 }

@@ -17,10 +17,11 @@ use super::output::Output;
 use super::part::{Part, PartError};
 use super::plan::Plan;
 use super::raised::Raised;
-use super::report::{BandReport, InputReport};
+use super::report::{BandReport, FlatPattern, InputReport};
+use super::space::{self, read_space_curve};
 use super::stage::{Clock, Stage};
 use super::ways::{Runs, ways, weighed, weighed_note};
-use crate::domain::{BandMap, CurveSpec, PlanarCurve};
+use crate::domain::{BandMap, CurveSpec, PlanarCurve, SpaceCurve, SpaceMap};
 use crate::exemplar::{Limits, read_path};
 use crate::fabricate::{self, Counts};
 use crate::fit::{FitOptions, Outline, Prepared, Sides, StitchMethod};
@@ -53,6 +54,8 @@ pub struct Band {
     pub(super) drawn: Option<Drawn>,
     /// The solid and its files, once they have passed.
     pub(super) raised: Option<Raised>,
+    /// Where it lies in space, if it does not lie in the plane.
+    pub(super) space: Option<SpaceMap>,
 }
 
 impl Band {
@@ -90,9 +93,10 @@ impl Band {
     ) -> Result<(Vec<Self>, bool), JobError> {
         let mut clock = Clock::new(progress);
         let options = &job.options;
-        let (exemplar, curve, curve_input) = clock.time(Stage::Read, || {
-            let (curve, input) = read_curve(&options.along, options.round_mm)?;
-            Ok::<_, JobError>((read_exemplar(job)?, curve, input))
+        let (exemplar, curve, in_space, curve_input) = clock.time(Stage::Read, || {
+            let in_space = read_space_curve(options)?;
+            let (curve, input) = read_curve(&options.along, options.round_mm, in_space.as_ref())?;
+            Ok::<_, JobError>((read_exemplar(job)?, curve, in_space, input))
         })?;
         if options.goal.closed_pattern && !curve.is_closed() {
             return Err(JobError::Option {
@@ -104,12 +108,26 @@ impl Band {
         let mut cut = clock.time(Stage::Slice, || slice(job, exemplar))?;
         let half = cut.height_mm / 2.0;
         // Where the band cannot lie is found before the search, not after it.
-        let map = clock.time(Stage::Map, || BandMap::new(curve, -half, half))?;
+        let (map, space) = clock.time(Stage::Map, || {
+            let space = in_space.map(|curve| space::space_map(job, curve, cut.height_mm)).transpose()?;
+            Ok::<_, JobError>((BandMap::new(curve, -half, half)?, space))
+        })?;
+        let job = &match &space {
+            Some(map) => BandJob { tolerances: space::flat_tolerances(&job.tolerances, map)?, ..job.clone() },
+            None => job.clone(),
+        };
         let ways = ways(job, &mut cut, &map, &mut clock)?;
         let mut refusal = None;
         for (number, way) in ways.iter().enumerate() {
             let made = way.runs(job, &cut, &map, &mut clock).and_then(|runs| {
-                Self::follow(runs, (job, outputs), &cut, &map, curve_input.as_ref(), &mut clock)
+                Self::follow(
+                    runs,
+                    (job, outputs),
+                    &cut,
+                    (&map, space.as_ref()),
+                    curve_input.as_ref(),
+                    &mut clock,
+                )
             });
             match made {
                 Ok((mut bands, is_fine_enough)) => {
@@ -132,7 +150,7 @@ impl Band {
         runs: Runs,
         (job, outputs): (&BandJob, &[Output]),
         cut: &Cut,
-        map: &BandMap,
+        (map, space): (&BandMap, Option<&SpaceMap>),
         curve_input: Option<&InputReport>,
         clock: &mut Clock<'_>,
     ) -> Result<(Vec<Self>, bool), JobError> {
@@ -142,6 +160,8 @@ impl Band {
         for (rank, run) in (1..).zip(runs.plans) {
             let curve_input = curve_input.cloned();
             let mut band = Self::made_with(&mut prepared, job, cut, run, map, curve_input, clock)?;
+            band.space = space.cloned();
+            band.report.flat = band.flat_pattern();
             band.report.rank = matches!(job.options.choice, Choice::Best(_)).then_some(rank);
             if let Some(width_mm) = runs.bridge_mm {
                 let inside = bridging::inside(map).map(|p| p + band.part.shift_mm);
@@ -189,8 +209,27 @@ impl Band {
         let (part, outline) = make_part(prepared, job, cut, (&plan, planned), map, clock)?;
         let report =
             describe(job, cut, &plan, planned, map, &outline, &part, curve_input, clock.times.clone());
-        let counts = Counts::of(&part.region);
-        Ok(Self { job: job.clone(), part, plan, planned, counts, report, drawn: None, raised: None })
+        let counts = part.counts;
+        Ok(Self {
+            job: job.clone(),
+            part,
+            plan,
+            planned,
+            counts,
+            report,
+            drawn: None,
+            raised: None,
+            space: None,
+        })
+    }
+
+    /// What its drawing is, of a band in space.
+    fn flat_pattern(&self) -> Option<FlatPattern> {
+        let space = self.space.as_ref()?;
+        let Counts { components, holes } = Counts::of(&self.part.region);
+        let is_joined = self.part.joined.is_some();
+        let cut_mm = self.part.joined.as_ref().map(|joined| joined.cut_mm);
+        Some(FlatPattern { components, holes, is_joined, cut_mm, scales: space.scales() })
     }
 
     /// Gives the part bridges of at least `width_mm` so that it meets the goal. `inside` is a point in the inside of
@@ -264,10 +303,20 @@ impl Band {
     }
 }
 
+/// The curve in the plane: for one in space, the line that stands for it.
 fn read_curve(
     spec: &CurveSpec,
     round_mm: Option<f64>,
+    in_space: Option<&SpaceCurve>,
 ) -> Result<(PlanarCurve, Option<InputReport>), JobError> {
+    let read = |file: &Path| InputReport { file: file.display().to_string(), sha256: sha256_of(file) };
+    if let Some(curve) = in_space {
+        let input = match spec {
+            CurveSpec::Points { file } => Some(read(file)),
+            _ => None,
+        };
+        return Ok((space::flat(curve)?, input));
+    }
     Ok(match spec {
         CurveSpec::Line { length_mm } => (PlanarCurve::line(*length_mm)?, None),
         CurveSpec::Circle { diameter_mm } => (PlanarCurve::circle(*diameter_mm)?, None),
@@ -277,7 +326,10 @@ fn read_curve(
                 Some(radius) => PlanarCurve::from_bez_path_rounded(&path, radius)?,
                 None => PlanarCurve::from_bez_path(&path)?,
             };
-            (curve, Some(InputReport { file: file.display().to_string(), sha256: sha256_of(file) }))
+            (curve, Some(read(file)))
+        }
+        CurveSpec::Ring { .. } | CurveSpec::Helix { .. } | CurveSpec::Points { .. } => {
+            unreachable!("a curve in space was read before")
         }
     })
 }

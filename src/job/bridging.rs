@@ -158,10 +158,10 @@ const BEYOND: f64 = 1e-3;
 /// Samples of a ring for the side on which its inside is.
 const SAMPLES: usize = 720;
 
-/// A point in the inside of a ring, where no band is; `None` for an open band.
+/// A point in the inside of a ring, where no band is; `None` for an open band, and for one in space.
 pub(super) fn inside(map: &BandMap) -> Option<DVec2> {
     let curve = map.curve();
-    if !curve.is_closed() {
+    if !curve.is_closed() || curve.is_rolled() {
         return None;
     }
     let at = |i: usize| map.map(curve.length_mm() * i as f64 / SAMPLES as f64, 0.0);

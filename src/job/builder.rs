@@ -11,6 +11,7 @@ use super::output::{Output, Target};
 use super::picture::PictureOptions;
 use super::plan::DEFAULT_MEMORY_LIMIT;
 use super::print::PrintOptions;
+use super::space::SpaceOptions;
 use super::stage::Stage;
 use crate::domain::CurveSpec;
 use crate::fabricate::Material;
@@ -60,6 +61,7 @@ pub struct BandBuilder {
     pub(super) laser: LaserOptions,
     pub(super) enforce: bool,
     pub(super) material: Option<Material>,
+    pub(super) space: SpaceOptions,
     chord_mm: f64,
     min_feature_mm: f64,
     min_gap_mm: f64,
@@ -96,6 +98,7 @@ impl BandBuilder {
             laser: LaserOptions::default(),
             enforce: false,
             material: None,
+            space: SpaceOptions::default(),
             chord_mm: Tolerances::DEFAULT_CHORD_MM,
             min_feature_mm: 0.0,
             min_gap_mm: 0.0,
@@ -262,6 +265,12 @@ impl BandBuilder {
         self
     }
 
+    /// What is asked of a band along a curve in space, beyond the curve.
+    pub fn space(mut self, space: SpaceOptions) -> Self {
+        self.space = space;
+        self
+    }
+
     /// What files of cut lines are to be like.
     pub fn laser(mut self, laser: LaserOptions) -> Self {
         self.laser = laser;
@@ -360,8 +369,11 @@ impl BandJob {
     /// Refuses targets that would overwrite each other or an input.
     fn check_targets<'t>(&self, targets: impl IntoIterator<Item = &'t Target>) -> Result<(), JobError> {
         let curve = match &self.options.along {
-            CurveSpec::Path { file, .. } => Some(file.as_path()),
-            CurveSpec::Line { .. } | CurveSpec::Circle { .. } => None,
+            CurveSpec::Path { file, .. } | CurveSpec::Points { file } => Some(file.as_path()),
+            CurveSpec::Line { .. }
+            | CurveSpec::Circle { .. }
+            | CurveSpec::Ring { .. }
+            | CurveSpec::Helix { .. } => None,
         };
         let drawings = curve.into_iter().chain(self.options.laser.engrave.as_deref());
         let inputs: Vec<&Path> = std::iter::once(self.options.exemplar.as_path()).chain(drawings).collect();

@@ -95,7 +95,10 @@ impl Band {
                 Format::Dxf => unreachable!("a DXF has cut lines"),
                 Format::Svg => {
                     report.made.svg_segments = Some([drawing.lines, drawing.cubics]);
-                    digest(output, drawing.text.as_bytes());
+                    // A certificate counts what is closed, and not what was cut open.
+                    if self.part.joined.is_none() {
+                        digest(output, drawing.text.as_bytes());
+                    }
                     sizes.push(drawing.text.len());
                     let bytes = drawing.text.clone().into_bytes();
                     clock.time(Stage::Verify, || Pending::unchanged(output.target(), bytes))?
@@ -152,9 +155,14 @@ impl Band {
         report.made.notes.extend(lost);
         report.made.laser = cutting.map(|cutting| cutting.report);
         report.made.bytes = sizes;
-        report.made.certificate.seal([found.components, found.holes], digests);
-        report.components = found.components;
-        report.holes = found.holes;
+        // What was found, or in space what was found in the solid or follows from the sides of the drawing.
+        let counts = self
+            .part
+            .joined
+            .as_ref()
+            .map_or([found.components, found.holes], |_| [self.counts.components, self.counts.holes]);
+        report.made.certificate.seal(counts, digests);
+        [report.components, report.holes] = counts;
         report.made.files = outputs.iter().map(|o| name(o.target()).display().to_string()).collect();
         report.made.times = clock.times;
         Ok((report, pending))

@@ -94,6 +94,7 @@ pub(super) fn describe(
         squash: outline.squash,
         squeezes: map.squeezes().to_vec(),
         bridges: None,
+        flat: None,
         weighed: Vec::new(),
         contact_sheet: None,
         seams: SeamReport {

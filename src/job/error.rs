@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use glam::DVec2;
 use thiserror::Error;
 
-use crate::domain::DomainError;
+use crate::domain::{DomainError, SpaceError};
 use crate::exemplar::ExemplarError;
 use crate::export::ExportError;
 use crate::fabricate::{BridgeError, EnforceError, FabricateError, KerfError, SheetError};
@@ -24,6 +24,9 @@ pub enum JobError {
     /// The curve cannot carry the band.
     #[error(transparent)]
     Domain(#[from] DomainError),
+    /// The curve in space cannot carry the band.
+    #[error(transparent)]
+    Space(#[from] SpaceError),
     /// The exemplar cannot be sliced.
     #[error(transparent)]
     Slicing(#[from] SlicingError),
@@ -141,6 +144,7 @@ impl JobError {
         match self {
             Self::Exemplar(_)
             | Self::Domain(_)
+            | Self::Space(_)
             | Self::Tolerances(_)
             | Self::Weights(_)
             | Self::Option { .. }

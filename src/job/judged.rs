@@ -14,9 +14,10 @@ use super::making;
 use super::output::{Format, Output};
 use super::print;
 use super::raised::{Raised, Wanted};
+use super::space;
 use super::stage::{Clock, Stage};
 use crate::export::{self, MeshDocument, SvgDocument, SvgOptions};
-use crate::fabricate::Solid;
+use crate::fabricate::{Counts, Solid};
 use crate::planar::{Region, Tolerances};
 use crate::verify::{self, Expected, Mismatch, NarrowPlaces, Narrowest, SvgReport};
 
@@ -71,8 +72,18 @@ impl Band {
     pub(super) fn drawn(&self, clock: &mut Clock<'_>) -> Result<Drawn, JobError> {
         let drawing = clock.time(Stage::Svg, || self.svg())?;
         let found = clock.time(Stage::Verify, || self.read_svg(drawing.text.as_bytes()))?;
+        let mut expected = self.expected();
+        if let Some(joined) = &self.part.joined {
+            // The drawing is cut open; the solid is not.
+            let flat = Counts::of(&self.part.region);
+            (expected.components, expected.holes) = (Some(flat.components.into()), Some(flat.holes.into()));
+            // What is narrow where it is cut is not where it is cut elsewhere.
+            clock
+                .time(Stage::Verify, || making::check_widths(&joined.other, &self.job.tolerances))
+                .map_err(|mismatch| self.mismatch(DRAWING.into(), mismatch, &found.narrow_places))?;
+        }
         found
-            .check(&self.expected())
+            .check(&expected)
             .map_err(|mismatch| self.mismatch(DRAWING.into(), mismatch, &found.narrow_places))?;
         Ok(Drawn { drawing, found })
     }
@@ -118,6 +129,9 @@ impl Band {
     fn solid(&self, notes: &mut Vec<String>) -> Result<Solid, JobError> {
         let options = &self.job.options;
         let chord_mm = self.job.tolerances.chord_mm();
+        if let Some(map) = &self.space {
+            return space::solid(&self.part, map, chord_mm);
+        }
         options.print.solid(&self.part.region, options.thickness_mm, chord_mm, notes)
     }
 
@@ -129,7 +143,9 @@ impl Band {
             outputs,
             document: &self.document(),
             expected: &self.expected(),
-            is_shown: options.picture.view.is_some() || (is_leaning && !options.laser.carve),
+            // The volume of what is bent is not that of what is flat.
+            is_shown: options.picture.view.is_some()
+                || ((is_leaning || self.space.is_some()) && !options.laser.carve),
         };
         Raised::new(wanted, clock, |notes| self.solid(notes))
     }

@@ -43,6 +43,7 @@ mod part;
 mod picture;
 mod plan;
 mod planning;
+mod points;
 mod print;
 mod raised;
 mod rect;
@@ -57,7 +58,9 @@ mod refusal;
 mod report;
 mod several;
 mod small;
+mod space;
 mod stage;
+mod unrolled;
 mod ways;
 
 pub use crate::reeb::KeptRange;
@@ -83,10 +86,11 @@ pub use rect_builder::{RectBuilder, RectJob};
 pub use rect_report::{Attempt, DirectionReport, RectReport};
 pub use recut::recut;
 pub use report::{
-    BandReport, DroppedCutReport, FallbackReport, InputReport, MadeReport, SeamReport, StageTime,
-    StitchReport,
+    BandReport, DroppedCutReport, FallbackReport, FlatPattern, InputReport, MadeReport, SeamReport,
+    StageTime, StitchReport,
 };
 pub use several::write_numbered;
+pub use space::SpaceOptions;
 pub use stage::Stage;
 pub use ways::WayReport;
 

@@ -66,6 +66,21 @@ pub struct FallbackReport {
     pub fault: String,
 }
 
+/// The drawing of a band in space: the pattern laid flat.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct FlatPattern {
+    /// The components of the drawing.
+    pub components: usize,
+    /// Its holes.
+    pub holes: usize,
+    /// Whether its left and right sides are the same place, where a closed band was cut open.
+    pub is_joined: bool,
+    /// Where along the curve it was cut, in millimetres.
+    pub cut_mm: Option<f64>,
+    /// The least and the greatest factor by which lengths along the band are multiplied in space, on its back or front.
+    pub scales: [f64; 2],
+}
+
 /// How long a stage took. Solids are made and read again while the drawing is, so stages may add up to more than the whole.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct StageTime {
@@ -169,6 +184,8 @@ pub struct BandReport {
     /// The bridges, when the ornament alone could not give what was asked for; then `components`, `holes` and
     /// the files are with them.
     pub bridges: Option<BridgesReport>,
+    /// Of a band in space, its drawing.
+    pub flat: Option<FlatPattern>,
     /// Where bridges were allowed: the sequences that were weighed against each other, the best first.
     pub weighed: Vec<WayReport>,
     /// The picture of all bands that were written together, with their numbers, if there is one.

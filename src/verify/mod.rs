@@ -61,4 +61,4 @@ pub use shells::{MeshFault, MeshFaultKind, MeshReport, Shell};
 pub use stl::read_stl;
 pub use svg::{SvgFault, SvgReport, read_svg};
 pub use threemf::read_threemf;
-pub use tiling::{Tiling, TilingFault, tiling};
+pub use tiling::{Rolled, Tiling, TilingFault, rolled, tiling};

@@ -139,6 +139,49 @@ pub fn tiling(tile: &Region) -> Result<Tiling, TilingFault> {
     })
 }
 
+/// What a strip has whose left and right sides are joined.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+pub struct Rolled {
+    /// The intervals in which the sides meet.
+    pub joins: usize,
+    /// Components when they are joined.
+    pub components: usize,
+    /// Holes then, one of them for each way round that the ink closes.
+    pub holes: usize,
+}
+
+/// What `strip` has when its left and right sides, at these x in millimetres, are joined. Ink that ends short of a side has nothing to
+/// do with it.
+///
+/// # Errors
+/// [`TilingFault`] when the ink along the two sides differs.
+pub fn rolled(strip: &Region, sides_mm: [f64; 2]) -> Result<Rolled, TilingFault> {
+    if strip.is_empty() {
+        return Err(TilingFault::Empty);
+    }
+    let grid = strip.grid();
+    let across = |p: GridPoint| (p.x, p.y);
+    let [left, right] = sides_mm.map(|x| grid.steps(x));
+    let [near, far] = [left, right].map(|x| intervals(strip, x, across));
+    let ends = |intervals: &[Interval]| intervals.iter().map(|i| (i.from, i.to)).collect::<Vec<_>>();
+    if ends(&near) != ends(&far) {
+        let (lost, x, opposite) =
+            match near.iter().find(|i| !far.iter().any(|j| (i.from, i.to) == (j.from, j.to))) {
+                Some(lost) => (lost.from, left, "right"),
+                None => (far.first().map_or(0, |i| i.from), right, "left"),
+            };
+        return Err(TilingFault::Side { position_mm: grid.to_mm(GridPoint::new(x, lost)), opposite });
+    }
+    let mut owner: Vec<usize> = (0..strip.components()).collect();
+    for (a, b) in near.iter().zip(&far) {
+        let (a, b) = (root(&owner, a.part), root(&owner, b.part));
+        owner[a.max(b)] = a.min(b);
+    }
+    let components = (0..owner.len()).filter(|&part| owner[part] == part).count();
+    let holes = components as i64 - (euler(strip) - near.len() as i64);
+    Ok(Rolled { joins: near.len(), components, holes: holes.try_into().expect("a Betti number") })
+}
+
 /// So many copies of `tile` to the right and up, `pitch` apart, united.
 fn copies(tile: &Region, pitch: GridPoint, columns: i64, rows: i64) -> Region {
     let places = (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j)));
@@ -195,6 +238,19 @@ mod tests {
 
     fn tile(boxes: &[(i64, i64, i64, i64)]) -> Region {
         planar::boxes(10_000_000, FillRule::NonZero, boxes)
+    }
+
+    #[test]
+    fn a_strip_is_rolled() {
+        // A bar all round, a bead over the sides, and an island inside.
+        let strip = tile(&[(0, 0, 40, 2), (0, 4, 3, 3), (37, 4, 3, 3), (20, 5, 4, 4)]);
+        let sides = strip.bounds_mm().map(|(low, high)| [low.x, high.x]).unwrap();
+        let found = rolled(&strip, sides).unwrap();
+        assert_eq!((found.joins, found.components, found.holes), (2, 3, 1));
+        let odd = tile(&[(0, 0, 40, 2), (0, 4, 3, 3)]);
+        assert!(matches!(rolled(&odd, sides), Err(TilingFault::Side { opposite: "right", .. })));
+        let open = rolled(&tile(&[(5, 0, 30, 2)]), sides).unwrap();
+        assert_eq!((open.joins, open.components, open.holes), (0, 1, 0));
     }
 
     #[test]

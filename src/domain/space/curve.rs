@@ -25,6 +25,8 @@ pub struct SpaceCurve {
     length: f64,
     is_closed: bool,
     twist: Twist,
+    /// What is added to z.
+    lift: f64,
 }
 
 #[derive(Debug, Clone)]
@@ -93,7 +95,7 @@ impl SpaceCurve {
         // What is open is so at the back, and a helix begins there.
         let start = if pitch_mm == 0.0 { FRAC_PI_2 + 0.5 * (TAU - angle) } else { FRAC_PI_2 };
         let kind = Kind::Helix { radius, rise, start };
-        Ok(Self { kind, length, is_closed, twist: Twist::default() })
+        Ok(Self { kind, length, is_closed, twist: Twist::default(), lift: 0.0 })
     }
 
     /// A smooth curve through `points`. At its start v points up as far as it can, along y where the curve itself goes up.
@@ -119,7 +121,8 @@ impl SpaceCurve {
         if length < MIN_LENGTH_MM {
             return Err(SpaceError::Points { found: points.len(), wanted });
         }
-        let mut curve = Self { kind: Kind::Sampled(sampled), length, is_closed, twist: Twist::default() };
+        let mut curve =
+            Self { kind: Kind::Sampled(sampled), length, is_closed, twist: Twist::default(), lift: 0.0 };
         if is_closed {
             // Carried all the way round, the frame comes back turned; that is undone evenly.
             let (start, end) = (curve.frame(0.0), curve.frame_unwrapped(length));
@@ -140,6 +143,12 @@ impl SpaceCurve {
         }
         self.twist = self.twist.and(twist);
         Ok(self)
+    }
+
+    /// The same, `by_mm` higher.
+    pub fn lifted(mut self, by_mm: f64) -> Self {
+        self.lift += by_mm;
+        self
     }
 
     /// The length in mm.
@@ -175,6 +184,7 @@ impl SpaceCurve {
             }
             Kind::Sampled(sampled) => sampled.frame(u),
         };
+        let frame = SpaceFrame { point: frame.point + DVec3::Z * self.lift, ..frame };
         let angle = self.twist.at(u, self.length);
         if angle == 0.0 {
             return frame;

@@ -71,11 +71,22 @@ impl SpaceMap {
         1.0 - frame.curvature.dot(frame.across) * uv.y - frame.curvature.dot(frame.out) * w
     }
 
-    fn check_folds(&self) -> Result<(), SpaceError> {
+    /// The least and the greatest of these factors anywhere on the band.
+    pub fn scales(&self) -> [f64; 2] {
+        let corners = || (0..4).map(|i| (self.v_range[i % 2], self.w_range[i / 2]));
+        let all = self.looks().flat_map(|u| corners().map(move |(v, w)| self.scale(DVec2::new(u, v), w)));
+        all.fold([1.0, 1.0], |[least, most], scale| [f64::min(least, scale), f64::max(most, scale)])
+    }
+
+    /// Places along the curve at which bends are looked at.
+    fn looks(&self) -> impl Iterator<Item = f64> {
         let length = self.curve.length_mm();
         let looks = (LOOKS_PER_MM * length).max(LOOKS).ceil();
-        for i in 0..=looks as usize {
-            let u = length * i as f64 / looks;
+        (0..=looks as usize).map(move |i| length * i as f64 / looks)
+    }
+
+    fn check_folds(&self) -> Result<(), SpaceError> {
+        for u in self.looks() {
             let frame = self.curve.frame(u);
             let (a, b) = (frame.curvature.dot(frame.across), frame.curvature.dot(frame.out));
             let reach = (a * self.v_range[0]).max(a * self.v_range[1])
