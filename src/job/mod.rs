@@ -33,6 +33,7 @@ mod describe;
 mod engrave;
 mod error;
 mod extrude;
+mod joined;
 mod json;
 mod judged;
 mod laser;

@@ -3,7 +3,8 @@
 use glam::DVec2;
 
 use super::error::{JobError, OutlineFault};
-use super::unrolled::{places, unrolled};
+use super::joined::Joined;
+use super::unrolled::{best_cut, unrolled};
 use crate::domain::BandMap;
 use crate::fabricate::{Counts, snapped_to_f32};
 use crate::fit::Outline;
@@ -32,15 +33,6 @@ pub(super) struct Part {
     pub(super) counts: Counts,
     /// How the two sides of a closed band that was laid flat are joined.
     pub(super) joined: Option<Joined>,
-}
-
-/// A closed band that was laid flat.
-#[derive(Debug, Clone)]
-pub(super) struct Joined {
-    /// Where along the curve it was cut: the left side of the region.
-    pub(super) cut_mm: f64,
-    /// The same cut elsewhere, so that places along the first cut can be judged too.
-    pub(super) other: Region,
 }
 
 /// Why an outline is no part.
@@ -90,16 +82,13 @@ impl Part {
         let page_mm = DVec2::new(length_mm, high - low) + 2.0 * MARGIN_MM;
         let grid = Grid::for_extent(page_mm.max_element())
             .map_err(|e| PartError::Job(JobError::Fabricate(e.into())))?;
-        let [cut_mm, other_mm] = places(&outline.contours, length_mm);
-        let strip = |cut_mm: f64| {
-            let unpaired = OutlineFault::Contact { position_mm: DVec2::new(cut_mm, 0.0) };
-            let paths = unrolled(&outline.contours, length_mm, cut_mm).ok_or(PartError::Untrue(unpaired))?;
-            region_of(&paths, grid, shift)
-        };
-        let (region, other) = (strip(cut_mm)?, strip(other_mm)?);
-        let rolled = verify::rolled(&region, [shift.x, shift.x + length_mm]).map_err(|_| {
-            PartError::Untrue(OutlineFault::Contact { position_mm: DVec2::new(MARGIN_MM, MARGIN_MM) })
-        })?;
+        let cut_mm = best_cut(&outline.contours, length_mm);
+        let touching = OutlineFault::Contact { position_mm: DVec2::new(MARGIN_MM, MARGIN_MM) };
+        let paths =
+            unrolled(&outline.contours, length_mm, cut_mm).ok_or(PartError::Untrue(touching.clone()))?;
+        let region = region_of(&paths, grid, shift)?;
+        let sides_mm = [shift.x, shift.x + length_mm];
+        let rolled = verify::rolled(&region, sides_mm).map_err(|_| PartError::Untrue(touching))?;
         let counts = Counts { components: rolled.components, holes: rolled.holes };
         check_counts(counts, planned)?;
         let line = |u_mm: f64| {
@@ -107,7 +96,7 @@ impl Part {
             vec![DVec2::new(x, low) + shift, DVec2::new(x, high) + shift]
         };
         let seams_mm = outline.seams.iter().map(|s| line(s.u_mm)).collect();
-        let joined = Some(Joined { cut_mm, other });
+        let joined = Some(Joined { cut_mm, sides_mm });
         Ok(Self { region, page_mm, shift_mm: shift, seams_mm, counts, joined })
     }
 

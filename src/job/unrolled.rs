@@ -9,40 +9,33 @@ use crate::fit::OutlineContour;
 
 /// Places for the cut that are looked at.
 const PLACES: usize = 720;
+/// Vertices that are nearer to each other than this along the band have no room for the cut between them.
+const NARROW_MM: f64 = 1e-4;
 
-/// Where the cut goes best, then the best place on the other half of the ring: as few strands as can be are cut, and those where they are
-/// widest. No vertex lies on either.
-pub(super) fn places(contours: &[OutlineContour], length_mm: f64) -> [f64; 2] {
+/// Where the cut goes best: where as few strands as can be are cut, and those where they are widest. No vertex lies there.
+pub(super) fn best_cut(contours: &[OutlineContour], length_mm: f64) -> f64 {
     let mut taken: Vec<f64> =
         contours.iter().flat_map(|c| &c.points).map(|p| p.x.rem_euclid(length_mm)).collect();
     taken.sort_unstable_by(f64::total_cmp);
-    let free = |near: f64| {
-        // The middle of the gap between vertices in which the place lies, or of the widest of its neighbours.
-        let next = taken.partition_point(|&x| x <= near);
-        let gaps = (next.saturating_sub(4)..(next + 4).min(taken.len())).filter_map(|i| {
-            let (a, b) = (taken[i.checked_sub(1)?], taken[i]);
-            Some((b - a, 0.5 * (a + b)))
-        });
-        gaps.max_by(|a, b| a.0.total_cmp(&b.0)).map_or(near, |(_, middle)| middle)
-    };
     let judged = |k: usize| {
-        let place = free((k as f64 + 0.5) / PLACES as f64 * length_mm);
+        let near = (k as f64 + 0.5) / PLACES as f64 * length_mm;
+        // The middle between two vertices.
+        let next = taken.partition_point(|&x| x <= near);
+        let (place, is_narrow) = match (next.checked_sub(1), taken.get(next)) {
+            (Some(before), Some(&after)) => {
+                (taken[before].midpoint(after), after - taken[before] < NARROW_MM)
+            }
+            _ => (near, false),
+        };
         let mut crossings = Vec::new();
         contours.iter().for_each(|c| crossings_at(c, length_mm, place, &mut crossings));
         crossings.sort_unstable_by(f64::total_cmp);
         let ink: f64 = crossings.chunks_exact(2).map(|pair| pair[1] - pair[0]).sum();
-        (crossings.len(), -ink, place)
+        (is_narrow, crossings.len(), -ink, place)
     };
-    let all: Vec<(usize, f64, f64)> = (0..PLACES).map(judged).collect();
-    let best = |places: &mut dyn Iterator<Item = &(usize, f64, f64)>| {
-        places.min_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))).expect("there are many").2
-    };
-    let first = best(&mut all.iter());
-    let is_far = |place: &&(usize, f64, f64)| {
-        let apart = (place.2 - first).rem_euclid(length_mm) / length_mm;
-        (0.25..=0.75).contains(&apart)
-    };
-    [first, best(&mut all.iter().filter(is_far))]
+    let all = (0..PLACES).map(judged);
+    let best = all.min_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
+    best.expect("there are many").3
 }
 
 /// The heights at which a contour crosses the line at `place`, and those a whole length further.
@@ -192,7 +185,7 @@ mod tests {
             contour(&[(100.0, 2.0)], -1),
             contour(&[(20.0, 4.0), (90.0, 4.0), (90.0, 6.0), (20.0, 6.0)], 0),
         ];
-        let [first, other] = places(&ring, 100.0);
-        assert!(!(20.0..90.0).contains(&first) && (20.0..90.0).contains(&other), "{first} {other}");
+        let cut = best_cut(&ring, 100.0);
+        assert!(!(20.0..90.0).contains(&cut), "{cut}");
     }
 }
