@@ -63,6 +63,10 @@ proptest! {
         let after = &enforced.region;
         prop_assert_eq!(Counts::of(after), Counts::of(&before));
         prop_assert!(holds(after, feature_mm, gap_mm));
+        // Nor is anything narrow that changes no count, but for tips and the ends of notches.
+        let places = narrow_places(after, 10, f64::INFINITY, CHORD_MM);
+        prop_assert!(places.ink.iter().all(|place| place.width_mm > feature_mm - CHORD_MM), "{:?}", places.ink);
+        prop_assert!(places.gaps.iter().all(|place| place.width_mm > gap_mm - CHORD_MM), "{:?}", places.gaps);
         // The part has kept its size, and its area is as the report says.
         let [old, new] = [&before, after].map(|region| region.bounds_mm().unwrap());
         let grown = (old.0 - new.0).max(new.1 - old.1).max_element();

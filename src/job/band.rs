@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 
+use super::blind;
 use super::bridging::{self, BridgesReport};
 use super::builder::BandJob;
 use super::certificate::{FileDigest, sha256};
@@ -410,6 +411,8 @@ impl Band {
         let narrowest_mm = found.min_feature.map(|n| n.width_mm);
         let lost = small::warnings(&self.part.region, &self.job.tolerances, outputs, narrowest_mm);
         report.made.notes.extend(lost);
+        let is_enforced = self.job.options.enforce;
+        report.made.notes.extend(blind::notes(&narrow_places, &self.kept_tolerances(), is_enforced));
         report.made.laser = cutting.map(|cutting| cutting.report);
         report.made.bytes = sizes;
         report.made.certificate.seal([found.components, found.holes], digests);
