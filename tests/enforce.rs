@@ -63,18 +63,25 @@ proptest! {
         let after = &enforced.region;
         prop_assert_eq!(Counts::of(after), Counts::of(&before));
         prop_assert!(holds(after, feature_mm, gap_mm));
-        // Nor is anything narrow that changes no count, but for tips and the ends of notches.
-        let places = narrow_places(after, 10, f64::INFINITY, CHORD_MM);
-        prop_assert!(places.ink.iter().all(|place| place.width_mm > feature_mm - CHORD_MM), "{:?}", places.ink);
-        prop_assert!(places.gaps.iter().all(|place| place.width_mm > gap_mm - CHORD_MM), "{:?}", places.gaps);
         // The part has kept its size, and its area is as the report says.
         let [old, new] = [&before, after].map(|region| region.bounds_mm().unwrap());
         let grown = (old.0 - new.0).max(new.1 - old.1).max_element();
         prop_assert!(grown <= 2.0 * CHORD_MM + feature_mm, "{}", grown);
         let change = enforced.added_mm2 - enforced.removed_mm2;
         prop_assert!((after.area_mm2() - before.area_mm2() - change).abs() < 1e-3);
+        // Ends for which there was no room are tried again, and others may find some.
+        if enforced.leaves_ends {
+            return Ok(());
+        }
         // Once more changes nothing.
         prop_assert_eq!(&enforce(after, &options).unwrap().region, after);
+        // Nor is anything much narrower that changes no count, but for tips and the ends of notches. Crannies between strokes
+        // are measured at the nodes of a core only, and may be missed by a few hundredths.
+        let places = narrow_places(after, 10, f64::INFINITY, CHORD_MM);
+        for (places, wanted_mm) in [(places.ink, feature_mm), (places.gaps, gap_mm)] {
+            let narrowest_mm = places.first().map_or(f64::INFINITY, |place| place.width_mm);
+            prop_assert!(narrowest_mm > 0.9 * wanted_mm, "{narrowest_mm} {wanted_mm} {feature_mm}");
+        }
     }
 }
 

@@ -57,6 +57,10 @@ const PATIENCE: usize = 6;
 const TRIAL: usize = 8;
 const SLIGHT: f64 = 0.01;
 const SLOW: f64 = 0.5;
+/// Drawings of fewer vertices are tried to the end, which takes a second or two.
+const LARGE: usize = 3000;
+/// Ends are to blame for a lack of room where all else is no more than this part of what lacks.
+const BLAME: f64 = 0.5;
 /// What is made is wider than what is wanted by this part: the distances along a core are those at its nodes, and
 /// between them it may be narrower by a hundredth.
 const WANTED: f64 = 1.03;
@@ -110,6 +114,8 @@ pub struct Enforced {
     pub added_mm2: f64,
     /// The ink that was taken away in square millimetres.
     pub removed_mm2: f64,
+    /// Whether ends are left as they were, as there is no room for them: slots, and lumps of ink on a neck.
+    pub leaves_ends: bool,
     /// How the drawing was pressed together before, so that what grew stays in its box; only [`super::enforce_in_box`] does.
     pub pressed: Option<Pressed>,
 }
@@ -148,7 +154,8 @@ pub enum EnforceError {
 /// together or apart, with the same components and holes. The same arguments give the same result.
 ///
 /// # Errors
-/// [`EnforceError`] for widths out of range, and where there is no room.
+/// [`EnforceError`] for widths out of range, and where there is no room. Where only slots, or lumps on a neck, have none,
+/// they stay as they are.
 pub fn enforce(region: &Region, options: &EnforceOptions) -> Result<Enforced, EnforceError> {
     let widths = [("minimum feature", options.min_feature_mm), ("minimum gap", options.min_gap_mm)];
     if let Some((name, found_mm)) = widths.into_iter().find(|(_, mm)| !(0.0..=100.0).contains(mm)) {
@@ -157,8 +164,29 @@ pub fn enforce(region: &Region, options: &EnforceOptions) -> Result<Enforced, En
     let Some(within) = size_kept(region, options).filter(|_| widths.iter().any(|(_, mm)| *mm > 0.0)) else {
         return Ok(unchanged(region));
     };
-    let counts = Counts::of(region);
     let job = Job::new(options, within);
+    let crowd = match mended(&job, region) {
+        Ok(now) => return Ok(changed(region, now, options)),
+        Err(crowd) => crowd,
+    };
+    // Ends for which there is no room are no reason to refuse a drawing that has room for all else.
+    let rest = Job { mends_ends: false, ..job };
+    let [all, others] = [&job, &rest].map(|job| job.survey(region).lack(job));
+    let are_to_blame = others <= BLAME * all || (others < all && !is_large(region));
+    if are_to_blame && let Ok(now) = mended(&rest, region) {
+        return Ok(Enforced { leaves_ends: true, ..changed(region, now, options) });
+    }
+    let Crowd(what, position_mm, width_mm) = crowd;
+    let EnforceOptions { min_feature_mm, min_gap_mm, .. } = *options;
+    Err(EnforceError::Crowded { what, position_mm, width_mm, min_feature_mm, min_gap_mm })
+}
+
+/// What lacks most where there is no room: ink or gap, where, and how wide it came to be.
+struct Crowd(&'static str, DVec2, f64);
+
+/// `region` with what `job` asks for.
+fn mended(job: &Job, region: &Region) -> Result<Region, Crowd> {
+    let counts = Counts::of(region);
     let mut now = region.clone();
     let mut narrowest = None;
     let (mut least_lack, mut last_progress) = (f64::INFINITY, 0);
@@ -167,17 +195,19 @@ pub fn enforce(region: &Region, options: &EnforceOptions) -> Result<Enforced, En
         let survey = job.survey(&now);
         narrowest = survey.narrowest();
         // Where there is no room, what lacks soon stops to become less.
-        let lack = survey.lack(&job);
+        let lack = survey.lack(job);
         let is_progress = lack < PROGRESS * least_lack;
         lacks.push(lack);
-        if narrowest.is_none() || (!is_progress && survey.is_good(&job)) {
+        // What is given as good stays as it is.
+        let is_settled = round == 0 || !is_progress;
+        if narrowest.is_none() || (is_settled && survey.is_good(job)) {
             match job.filled(&now, &job.bays(&survey, false)) {
                 Some(full) => now = full,
-                None => return Ok(changed(region, now, options)),
+                None => return Ok(now),
             }
             continue;
         }
-        if is_hopeless(&lacks) {
+        if is_large(region) && is_hopeless(&lacks) {
             break;
         }
         if is_progress {
@@ -195,8 +225,12 @@ pub fn enforce(region: &Region, options: &EnforceOptions) -> Result<Enforced, En
         }
     }
     let (what, position_mm, width_mm) = narrowest.unwrap_or(("ink", DVec2::ZERO, 0.0));
-    let EnforceOptions { min_feature_mm, min_gap_mm, .. } = *options;
-    Err(EnforceError::Crowded { what, position_mm, width_mm, min_feature_mm, min_gap_mm })
+    Err(Crowd(what, position_mm, width_mm))
+}
+
+/// Whether every step takes its time.
+fn is_large(region: &Region) -> bool {
+    region.vertices() > LARGE
 }
 
 /// Whether what lacked after each step shows that there is no room, long before it stops to become less.
@@ -214,7 +248,14 @@ fn size_kept(region: &Region, options: &EnforceOptions) -> Option<(DVec2, DVec2)
 }
 
 fn unchanged(region: &Region) -> Enforced {
-    Enforced { region: region.clone(), changes: Vec::new(), added_mm2: 0.0, removed_mm2: 0.0, pressed: None }
+    Enforced {
+        region: region.clone(),
+        changes: Vec::new(),
+        added_mm2: 0.0,
+        removed_mm2: 0.0,
+        leaves_ends: false,
+        pressed: None,
+    }
 }
 
 /// What became of `before`.
@@ -245,6 +286,7 @@ fn changed(before: &Region, now: Region, options: &EnforceOptions) -> Enforced {
         changes,
         added_mm2: added.area_mm2(),
         removed_mm2: removed.area_mm2(),
+        leaves_ends: false,
         pressed: None,
     }
 }
@@ -264,6 +306,8 @@ struct Job {
     spacing: f64,
     within: (DVec2, DVec2),
     chord_mm: f64,
+    /// Whether slots and necks are mended: what ends blind and is no hair.
+    mends_ends: bool,
 }
 
 /// Both sides as they are.
@@ -289,19 +333,18 @@ impl Job {
             within,
             // Steps repeat, and each may leave the wanted width by a chord.
             chord_mm: (0.25 * options.chord_mm).max(1e-4 * least),
+            mends_ends: true,
         }
     }
 
     /// What may end blind in ink (0) or in gaps (1); with `has_no_necks`, no lump or pocket may.
     fn tip(&self, side: usize, has_no_necks: bool) -> Tip {
         let half = self.halves[side];
-        match half > 0.0 {
-            true => Tip {
-                long_mm: TIP * 2.0 * half,
-                uneven_mm: if has_no_necks { self.chord_mm } else { f64::INFINITY },
-            },
-            false => Tip::ANY,
+        if half <= 0.0 || (side == 1 && !self.mends_ends) {
+            return Tip::ANY;
         }
+        let uneven_mm = if has_no_necks && self.mends_ends { self.chord_mm } else { f64::INFINITY };
+        Tip { long_mm: TIP * 2.0 * half, uneven_mm }
     }
 
     /// Points of bays that are no notches: of those that are not to be widened, as they are short and have a pocket; with
