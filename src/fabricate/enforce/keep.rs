@@ -10,7 +10,7 @@
 
 use std::collections::VecDeque;
 
-use super::core::Core;
+use super::core::{Core, Node};
 
 const NONE: usize = usize::MAX;
 
@@ -36,7 +36,10 @@ pub(super) struct Kept {
 impl Kept {
     /// Nodes with a radius below `half_mm` are narrow. A free end that is no tip because it is long is kept after all, up to
     /// `half_mm` from its end, so that it becomes no longer when it becomes wider; one with a neck, up to where it is widest.
-    pub(super) fn new(core: &Core, half_mm: f64, tip: Tip) -> Self {
+    ///
+    /// `across` gives half of the width at a node, and is infinite where there is a contour on one side only: nodes beside the
+    /// middle look narrower than it is there, and triangles along a round wall have nodes all along it.
+    pub(super) fn new(core: &Core, half_mm: f64, tip: Tip, across: impl Fn(&Node) -> f64) -> Self {
         let n = core.nodes.len();
         let ways = Ways::new(core);
         let mut degree: Vec<usize> = (0..n).map(|i| ways.from(i).len()).collect();
@@ -54,7 +57,9 @@ impl Kept {
             if !kept[i] || held[i] {
                 continue;
             }
-            let (is_long, is_neck) = (reach[i] > tip.long_mm, radius(widest[i]) > radius(i) + tip.uneven_mm);
+            let is_long = reach[i] > tip.long_mm;
+            let lump = radius(widest[i]) - tip.uneven_mm;
+            let is_neck = lump > radius(i) && lump > across(&core.nodes[i]);
             if is_long || is_neck {
                 held[i] = true;
                 let mut at = if is_long { i } else { NONE };
@@ -70,9 +75,12 @@ impl Kept {
                 continue;
             }
             kept[i] = false;
+            // A way along the wall of something wide is no length of a narrow thing.
+            let is_between = tip.long_mm.is_infinite() || across(&core.nodes[i]).is_finite();
             for &to in ways.from(i).iter().filter(|&&to| kept[to]) {
                 degree[to] -= 1;
-                let far = reach[i] + core.nodes[i].at.distance(core.nodes[to].at);
+                let way = core.nodes[i].at.distance(core.nodes[to].at);
+                let far = reach[i] + if is_between { way } else { 0.0 };
                 if far > reach[to] {
                     (reach[to], outer[to]) = (far, i);
                 }
@@ -174,7 +182,6 @@ impl Ways {
 mod tests {
     use glam::DVec2;
 
-    use super::super::core::Node;
     use super::*;
 
     /// A chain of nodes 1 mm apart, with these radii.
@@ -187,7 +194,7 @@ mod tests {
     }
 
     fn kept(core: &Core, long_mm: f64) -> Vec<usize> {
-        let kept = Kept::new(core, 1.0, Tip { long_mm, uneven_mm: 0.05 }).nodes;
+        let kept = Kept::new(core, 1.0, Tip { long_mm, uneven_mm: 0.05 }, |node| node.radius).nodes;
         (0..kept.len()).filter(|&i| kept[i]).collect()
     }
 
@@ -224,10 +231,18 @@ mod tests {
     }
 
     #[test]
+    fn what_only_looks_like_a_neck_is_none() {
+        let core = chain(&[0.0, 0.3, 0.2, 0.5, 2.0]);
+        let tip = Tip { long_mm: 10.0, uneven_mm: 0.05 };
+        let kept = Kept::new(&core, 1.0, tip, |_| f64::INFINITY).nodes;
+        assert_eq!(kept, [false, false, false, false, true]);
+    }
+
+    #[test]
     fn what_is_left_alone_ends_in_the_wide_and_in_lumps() {
         let drawn_back = |radii: &[f64]| {
             let core = chain(radii);
-            let kept = Kept::new(&core, 1.0, Tip::ANY).drawn_back(&core, 5.0).nodes;
+            let kept = Kept::new(&core, 1.0, Tip::ANY, |node| node.radius).drawn_back(&core, 5.0).nodes;
             (0..kept.len()).filter(|&i| kept[i]).collect::<Vec<_>>()
         };
         assert_eq!(drawn_back(&[0.5, 1.5, 2.0, 3.0, 6.0, 5.5, 4.0, 2.0]), [4, 5]);

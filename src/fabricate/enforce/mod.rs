@@ -351,7 +351,8 @@ impl Job {
     /// `all`, of all that are too narrow.
     fn bays(&self, survey: &Survey, all: bool) -> Vec<DVec2> {
         let (core, half) = (&survey.cores[1], self.halves[1]);
-        let kept = |tip: Tip| Kept::new(core, ENOUGH * half, tip).nodes;
+        let across = |node: &core::Node| core::across(&survey.index, node);
+        let kept = |tip: Tip| Kept::new(core, ENOUGH * half, tip, across).nodes;
         let (bays, blind) = (kept(self.tip(1, true)), kept(Tip::ANY));
         let others = if all { &blind } else { &survey.kept.nodes };
         let is_bay = |&i: &usize| bays[i] && !others[i] && core.nodes[i].radius < half;
@@ -373,8 +374,11 @@ impl Job {
         let cores = cores(region, &index, &fineness);
         let tips = [self.tip(0, true), self.tip(1, false)];
         // A side of which nothing is asked is held together where it is narrow, but may lose its corners.
-        let kept =
-            [0, 1].map(|side| Kept::new(&cores[side], enough[side].max(self.guards[side]), tips[side]));
+        let kept = [0, 1].map(|side| {
+            Kept::new(&cores[side], enough[side].max(self.guards[side]), tips[side], |node| {
+                core::across(&index, node)
+            })
+        });
         let lacking = [0, 1].map(|side| {
             let radii = [enough[side], WANTED * self.halves[side]];
             let strokes = lacking(&cores[side], &kept[side], &index, radii, self.spacing);
