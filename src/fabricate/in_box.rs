@@ -49,7 +49,8 @@ pub fn enforce_in_box(region: &Region, options: &EnforceOptions) -> Result<Enfor
     let mut press = None;
     let [mut left_below, mut right_above] = [DVec2::ZERO; 2];
     for _ in 0..TRIES {
-        let Ok(free) = enforced_freely(&pressed, options) else { break };
+        // Where there is no room without a box, there is none in it.
+        let free = enforced_freely(&pressed, options)?;
         let Some((least, most)) = free.region.bounds_mm() else { break };
         let over = [(low - least).max(DVec2::ZERO), (most - high).max(DVec2::ZERO)];
         if over[0].max(over[1]).max_element() <= options.chord_mm {

@@ -1,6 +1,7 @@
 //! From a band to its files: every output encoded, read again and counted, and what was found in them told.
 
 use super::band::Band;
+use super::blind;
 use super::certificate::{FileDigest, sha256};
 use super::error::JobError;
 use super::extrude::name;
@@ -153,6 +154,8 @@ impl Band {
         let narrowest_mm = found.min_feature.map(|n| n.width_mm);
         let lost = small::warnings(&self.part.region, &self.job.tolerances, outputs, narrowest_mm);
         report.made.notes.extend(lost);
+        let is_enforced = self.job.options.enforce;
+        report.made.notes.extend(blind::notes(&narrow_places, &self.kept_tolerances(), is_enforced));
         report.made.laser = cutting.map(|cutting| cutting.report);
         report.made.bytes = sizes;
         // What was found, or in space what was found in the solid or follows from the sides of the drawing.

@@ -6,6 +6,7 @@ use glam::DVec2;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::blind;
 use super::bridging::{self, BridgesReport};
 use super::error::JobError;
 use super::laser::{Cutting, LaserOptions, LaserReport};
@@ -245,6 +246,7 @@ pub fn extrude(
     let narrowest_mm = narrow_places.ink.first().map(|n| n.width_mm);
     notes.extend_from_slice(&raised.notes);
     notes.extend(small::warnings(&region, tolerances, outputs, narrowest_mm));
+    notes.extend(blind::notes(&narrow_places, tolerances, enforce));
     persist(pending, None)?;
     Ok(ExtrudeReport {
         schema_version: 1,

@@ -54,7 +54,7 @@ impl Band {
     }
 
     /// The tolerances of what is kept: of the part, or of the plate that it is carved out of.
-    fn kept_tolerances(&self) -> Tolerances {
+    pub(super) fn kept_tolerances(&self) -> Tolerances {
         // Twice swapped is not swapped.
         self.job.options.laser.of_pattern(&self.job.tolerances)
     }

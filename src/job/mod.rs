@@ -23,6 +23,7 @@
 //! ```
 
 mod band;
+mod blind;
 mod bridging;
 mod builder;
 mod certificate;

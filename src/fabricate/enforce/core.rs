@@ -15,6 +15,9 @@ use crate::planar::{EdgeIndex, IndexedEdge, Region, Sets, threads};
 
 /// A middle of an edge is no better than half of its length, and good from this part on.
 const CENTRED: f64 = 0.45;
+/// A neck may be so much farther from one side than from the other, as a part of its radius: nodes are about that well in the
+/// middle of what is narrow.
+const BESIDE: f64 = 0.5;
 /// Points of an edge that are looked at for the one farthest from all contours.
 const SAMPLES: usize = 15;
 /// Finer looks around the best of them, each at half the distance.
@@ -167,6 +170,15 @@ impl Found {
 /// The distance to the nearest contour.
 pub(super) fn radius(index: &EdgeIndex, at: DVec2) -> f64 {
     index.nearest(at).map_or(f64::INFINITY, |edge| edge.nearest(at).distance(at))
+}
+
+/// Half of the width across a node that may be a neck, in millimetres: as far as the nearest contour is on one side, there
+/// is one on the other, or nearly. Infinite where there is none: the node is near the edge of something wide.
+pub(super) fn across(index: &EdgeIndex, node: &Node) -> f64 {
+    let Some(edge) = index.nearest(node.at) else { return f64::INFINITY };
+    let opposite = 2.0 * node.at - edge.nearest(node.at);
+    let beyond = radius(index, opposite);
+    if beyond <= BESIDE * node.radius { node.radius + 0.5 * beyond } else { f64::INFINITY }
 }
 
 /// The point where an edge of the triangulation is crossed: its middle if that is as wide as matters or as can be, or

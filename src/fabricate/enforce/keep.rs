@@ -2,14 +2,31 @@
 //!
 //! From its ends inwards, a core is peeled off as long as it is narrow: what that takes away are the tips of ink and
 //! the ends of notches, whose loss changes no count. What is left is wide, leads from one wide place to another, or
-//! goes round in a loop. A part that would be peeled off altogether keeps its widest point. Ink that ends freely but is
-//! long is a hair and no tip: it is seen, and would be missed ([`Kept::new`]).
+//! goes round in a loop. A part that would be peeled off altogether keeps its widest point.
+//!
+//! Not all that ends blind is a tip ([`Tip`]). What is long is a hair of ink, or a slot: it is seen, and would be missed.
+//! What is wider again behind a neck is a lump of ink that breaks off, or a pocket that is closed off, before it is gone
+//! itself.
 
 use std::collections::VecDeque;
 
-use super::core::Core;
+use super::core::{Core, Node};
 
 const NONE: usize = usize::MAX;
+
+/// What ends blind and is a tip, in millimetres.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Tip {
+    /// It is narrow for no more than that.
+    pub(super) long_mm: f64,
+    /// Its radius is nowhere greater by more than that than it is nearer to its foot.
+    pub(super) uneven_mm: f64,
+}
+
+impl Tip {
+    /// Whatever ends blind.
+    pub(super) const ANY: Self = Self { long_mm: f64::INFINITY, uneven_mm: f64::INFINITY };
+}
 
 /// The nodes of a core that are kept.
 pub(super) struct Kept {
@@ -17,9 +34,12 @@ pub(super) struct Kept {
 }
 
 impl Kept {
-    /// Nodes with a radius below `half_mm` are narrow. A free end that is peeled off for more than `tip_mm` is kept after
-    /// all, up to `half_mm` from its end, so that it becomes no longer when it becomes wider.
-    pub(super) fn new(core: &Core, half_mm: f64, tip_mm: f64) -> Self {
+    /// Nodes with a radius below `half_mm` are narrow. A free end that is no tip because it is long is kept after all, up to
+    /// `half_mm` from its end, so that it becomes no longer when it becomes wider; one with a neck, up to where it is widest.
+    ///
+    /// `across` gives half of the width at a node, and is infinite where there is a contour on one side only: nodes beside the
+    /// middle look narrower than it is there, and triangles along a round wall have nodes all along it.
+    pub(super) fn new(core: &Core, half_mm: f64, tip: Tip, across: impl Fn(&Node) -> f64) -> Self {
         let n = core.nodes.len();
         let ways = Ways::new(core);
         let mut degree: Vec<usize> = (0..n).map(|i| ways.from(i).len()).collect();
@@ -27,26 +47,45 @@ impl Kept {
         let mut held = vec![false; n];
         let mut reach = vec![0.0; n];
         let mut outer = vec![NONE; n];
-        let is_loose = |i: usize, degree: &[usize]| degree[i] <= 1 && core.nodes[i].radius < half_mm;
+        // The widest node that has been peeled off behind each, and the way there.
+        let mut widest: Vec<usize> = (0..n).collect();
+        let mut towards = vec![NONE; n];
+        let radius = |i: usize| core.nodes[i].radius;
+        let is_loose = |i: usize, degree: &[usize]| degree[i] <= 1 && radius(i) < half_mm;
         let mut loose: VecDeque<usize> = (0..n).filter(|&i| is_loose(i, &degree)).collect();
         while let Some(i) = loose.pop_front() {
             if !kept[i] || held[i] {
                 continue;
             }
-            if reach[i] > tip_mm {
-                let mut at = i;
+            let is_long = reach[i] > tip.long_mm;
+            let lump = radius(widest[i]) - tip.uneven_mm;
+            let is_neck = lump > radius(i) && lump > across(&core.nodes[i]);
+            if is_long || is_neck {
+                held[i] = true;
+                let mut at = if is_long { i } else { NONE };
                 while at != NONE {
-                    held[at] = reach[at] >= half_mm;
+                    held[at] |= reach[at] >= half_mm;
                     at = outer[at];
+                }
+                let mut at = i;
+                while is_neck && at != widest[i] {
+                    at = towards[at];
+                    held[at] = true;
                 }
                 continue;
             }
             kept[i] = false;
+            // A way along the wall of something wide is no length of a narrow thing.
+            let is_between = tip.long_mm.is_infinite() || across(&core.nodes[i]).is_finite();
             for &to in ways.from(i).iter().filter(|&&to| kept[to]) {
                 degree[to] -= 1;
-                let far = reach[i] + core.nodes[i].at.distance(core.nodes[to].at);
+                let way = core.nodes[i].at.distance(core.nodes[to].at);
+                let far = reach[i] + if is_between { way } else { 0.0 };
                 if far > reach[to] {
                     (reach[to], outer[to]) = (far, i);
+                }
+                if radius(widest[i]) > radius(widest[to]) {
+                    (widest[to], towards[to]) = (widest[i], i);
                 }
                 if is_loose(to, &degree) {
                     loose.push_back(to);
@@ -143,7 +182,6 @@ impl Ways {
 mod tests {
     use glam::DVec2;
 
-    use super::super::core::Node;
     use super::*;
 
     /// A chain of nodes 1 mm apart, with these radii.
@@ -155,8 +193,8 @@ mod tests {
         }
     }
 
-    fn kept(core: &Core, tip_mm: f64) -> Vec<usize> {
-        let kept = Kept::new(core, 1.0, tip_mm).nodes;
+    fn kept(core: &Core, long_mm: f64) -> Vec<usize> {
+        let kept = Kept::new(core, 1.0, Tip { long_mm, uneven_mm: 0.05 }, |node| node.radius).nodes;
         (0..kept.len()).filter(|&i| kept[i]).collect()
     }
 
@@ -181,10 +219,30 @@ mod tests {
     }
 
     #[test]
+    fn necks_and_what_they_close_off_stay() {
+        // Behind a neck of 0.2 it is wider by 0.2, and in the end by 0.04 only.
+        let core = chain(&[0.0, 0.24, 0.2, 0.3, 0.4, 0.2, 0.3, 2.0]);
+        assert_eq!(kept(&core, 10.0), [4, 5, 6, 7]);
+        // A neck with two pockets.
+        let mut forked = chain(&[0.0, 0.3, 0.1, 0.5, 2.0]);
+        forked.nodes.push(Node { at: DVec2::new(2.0, 1.0), radius: 0.2, part: 0 });
+        forked.links.push([2, 5]);
+        assert_eq!(kept(&forked, 10.0), [1, 2, 3, 4]);
+    }
+
+    #[test]
+    fn what_only_looks_like_a_neck_is_none() {
+        let core = chain(&[0.0, 0.3, 0.2, 0.5, 2.0]);
+        let tip = Tip { long_mm: 10.0, uneven_mm: 0.05 };
+        let kept = Kept::new(&core, 1.0, tip, |_| f64::INFINITY).nodes;
+        assert_eq!(kept, [false, false, false, false, true]);
+    }
+
+    #[test]
     fn what_is_left_alone_ends_in_the_wide_and_in_lumps() {
         let drawn_back = |radii: &[f64]| {
             let core = chain(radii);
-            let kept = Kept::new(&core, 1.0, 10.0).drawn_back(&core, 5.0).nodes;
+            let kept = Kept::new(&core, 1.0, Tip::ANY, |node| node.radius).drawn_back(&core, 5.0).nodes;
             (0..kept.len()).filter(|&i| kept[i]).collect::<Vec<_>>()
         };
         assert_eq!(drawn_back(&[0.5, 1.5, 2.0, 3.0, 6.0, 5.5, 4.0, 2.0]), [4, 5]);

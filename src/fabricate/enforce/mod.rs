@@ -12,11 +12,15 @@
 //! [`EnforceError::Crowded`] names the place. The box around the ink is never left, so that the part keeps its size.
 //!
 //! Tips of ink and ends of notches are left as they are, as a machine that cannot make them loses nothing that
-//! counts; but ink that ends freely and is thin for more than [`TIP`] times the minimum feature is seen, and is thickened.
+//! counts; but what ends freely and is narrow for more than [`TIP`] times the width is seen: such ink is thickened, and such a
+//! gap widened. A short end with a neck is no tip either. Ink is thickened there, as a lump that breaks off is missed; a gap is
+//! filled ([`fill`]), as a pocket that nothing gets into is nothing, and widening it would bite into the ink around. Long
+//! gaps that end blind are filled too where there is no room to widen them.
 //!
 //! Excluded: moving strands apart, and the judgement whether a file holds, which is for another room to give.
 
 mod core;
+mod fill;
 mod grow;
 mod keep;
 mod stroke;
@@ -30,7 +34,7 @@ use thiserror::Error;
 
 use self::core::{Core, Fineness, cores};
 use self::grow::{Bounds, complement, difference, grown};
-use self::keep::Kept;
+use self::keep::{Kept, Tip};
 use self::stroke::{Stroke, guards, lacking, merged};
 use super::Counts;
 use super::in_box::Pressed;
@@ -47,6 +51,16 @@ const YIELD: f64 = 0.5;
 /// no room. Fewer steps, and ink that is blocked for a while is given up; more only take time.
 const PROGRESS: f64 = 0.97;
 const PATIENCE: usize = 6;
+/// After so many steps it is judged whether there is hope: there is while no more than this part of what lacked first is
+/// lacking, or while four steps leave less than this part of what lacked before them. Drawings that have room lack a few
+/// hundredths after so many; what is judged earlier may only have begun to give way.
+const TRIAL: usize = 8;
+const SLIGHT: f64 = 0.01;
+const SLOW: f64 = 0.5;
+/// Drawings of fewer vertices are tried to the end, which takes a second or two.
+const LARGE: usize = 3000;
+/// Ends are to blame for a lack of room where all else is no more than this part of what lacks.
+const BLAME: f64 = 0.5;
 /// What is made is wider than what is wanted by this part: the distances along a core are those at its nodes, and
 /// between them it may be narrower by a hundredth.
 const WANTED: f64 = 1.03;
@@ -61,6 +75,8 @@ const UNASKED: f64 = 0.1;
 /// Ink that ends freely is a tip when it is thin for no more than so many minimum features, as are the tips of wedges
 /// of more than 17 degrees; longer, and it is a hair.
 pub const TIP: f64 = 3.0;
+/// What of a filled bay is thinner than twice this part of a chord is rounding.
+const SLIVER: f64 = 0.25;
 /// How far the outside is taken along around the ink, in diagonals of its box: more than a core reaches, which goes one
 /// and a little farther.
 const FRAME: f64 = 16.0;
@@ -98,6 +114,8 @@ pub struct Enforced {
     pub added_mm2: f64,
     /// The ink that was taken away in square millimetres.
     pub removed_mm2: f64,
+    /// Whether ends are left as they were, as there is no room for them: slots, and lumps of ink on a neck.
+    pub leaves_ends: bool,
     /// How the drawing was pressed together before, so that what grew stays in its box; only [`super::enforce_in_box`] does.
     pub pressed: Option<Pressed>,
 }
@@ -116,7 +134,7 @@ pub enum EnforceError {
     /// There is no room for strands and gaps as wide as they must be.
     #[error(
         "at ({:.3}, {:.3}) mm there is no room for ink {min_feature_mm} mm and gaps {min_gap_mm} mm wide: the {what} \
-         there can be made {width_mm:.3} mm wide and no more without moving strands apart", position_mm.x, position_mm.y
+         there comes out {width_mm:.3} mm wide, and no more without moving strands apart", position_mm.x, position_mm.y
     )]
     Crowded {
         /// Ink or gap.
@@ -136,7 +154,8 @@ pub enum EnforceError {
 /// together or apart, with the same components and holes. The same arguments give the same result.
 ///
 /// # Errors
-/// [`EnforceError`] for widths out of range, and where there is no room.
+/// [`EnforceError`] for widths out of range, and where there is no room. Where only slots, or lumps on a neck, have none,
+/// they stay as they are.
 pub fn enforce(region: &Region, options: &EnforceOptions) -> Result<Enforced, EnforceError> {
     let widths = [("minimum feature", options.min_feature_mm), ("minimum gap", options.min_gap_mm)];
     if let Some((name, found_mm)) = widths.into_iter().find(|(_, mm)| !(0.0..=100.0).contains(mm)) {
@@ -145,25 +164,59 @@ pub fn enforce(region: &Region, options: &EnforceOptions) -> Result<Enforced, En
     let Some(within) = size_kept(region, options).filter(|_| widths.iter().any(|(_, mm)| *mm > 0.0)) else {
         return Ok(unchanged(region));
     };
-    let counts = Counts::of(region);
     let job = Job::new(options, within);
+    let crowd = match mended(&job, region) {
+        Ok(now) => return Ok(changed(region, now, options)),
+        Err(crowd) => crowd,
+    };
+    // Ends for which there is no room are no reason to refuse a drawing that has room for all else.
+    let rest = Job { mends_ends: false, ..job };
+    let [all, others] = [&job, &rest].map(|job| job.survey(region).lack(job));
+    let are_to_blame = others <= BLAME * all || (others < all && !is_large(region));
+    if are_to_blame && let Ok(now) = mended(&rest, region) {
+        return Ok(Enforced { leaves_ends: true, ..changed(region, now, options) });
+    }
+    let Crowd(what, position_mm, width_mm) = crowd;
+    let EnforceOptions { min_feature_mm, min_gap_mm, .. } = *options;
+    Err(EnforceError::Crowded { what, position_mm, width_mm, min_feature_mm, min_gap_mm })
+}
+
+/// What lacks most where there is no room: ink or gap, where, and how wide it came to be.
+struct Crowd(&'static str, DVec2, f64);
+
+/// `region` with what `job` asks for.
+fn mended(job: &Job, region: &Region) -> Result<Region, Crowd> {
+    let counts = Counts::of(region);
     let mut now = region.clone();
     let mut narrowest = None;
     let (mut least_lack, mut last_progress) = (f64::INFINITY, 0);
+    let mut lacks = Vec::new();
     for round in 0..2 * ROUNDS {
         let survey = job.survey(&now);
         narrowest = survey.narrowest();
-        if narrowest.is_none() {
-            return Ok(changed(region, now, options));
-        }
         // Where there is no room, what lacks soon stops to become less.
-        let lack = survey.lack(&job);
-        if lack < PROGRESS * least_lack {
-            (least_lack, last_progress) = (lack, round);
-        } else if survey.is_good(&job) {
-            return Ok(changed(region, now, options));
-        } else if round - last_progress >= PATIENCE {
+        let lack = survey.lack(job);
+        let is_progress = lack < PROGRESS * least_lack;
+        lacks.push(lack);
+        // What is given as good stays as it is.
+        let is_settled = round == 0 || !is_progress;
+        if narrowest.is_none() || (is_settled && survey.is_good(job)) {
+            match job.filled(&now, &job.bays(&survey, false)) {
+                Some(full) => now = full,
+                None => return Ok(now),
+            }
+            continue;
+        }
+        if is_large(region) && is_hopeless(&lacks) {
             break;
+        }
+        if is_progress {
+            (least_lack, last_progress) = (lack, round);
+        } else if round - last_progress >= PATIENCE {
+            // No room for gaps that end blind is no reason to refuse: they can be filled.
+            let Some(full) = job.filled(&now, &job.bays(&survey, true)) else { break };
+            (now, least_lack, last_progress) = (full, f64::INFINITY, round);
+            continue;
         }
         let turns = if round % 2 == 0 { [Side::Ink, Side::Gap] } else { [Side::Gap, Side::Ink] };
         let step = turns.into_iter().find_map(|side| job.step(&now, &survey, side));
@@ -172,8 +225,18 @@ pub fn enforce(region: &Region, options: &EnforceOptions) -> Result<Enforced, En
         }
     }
     let (what, position_mm, width_mm) = narrowest.unwrap_or(("ink", DVec2::ZERO, 0.0));
-    let EnforceOptions { min_feature_mm, min_gap_mm, .. } = *options;
-    Err(EnforceError::Crowded { what, position_mm, width_mm, min_feature_mm, min_gap_mm })
+    Err(Crowd(what, position_mm, width_mm))
+}
+
+/// Whether every step takes its time.
+fn is_large(region: &Region) -> bool {
+    region.vertices() > LARGE
+}
+
+/// Whether what lacked after each step shows that there is no room, long before it stops to become less.
+fn is_hopeless(lacks: &[f64]) -> bool {
+    let (&[first, ..], &[.., before, _, _, _, now]) = (lacks, lacks) else { return false };
+    lacks.len() > TRIAL && now > SLIGHT * first && now > SLOW * before
 }
 
 /// The box around the ink, made as wide and high as the minimum feature needs.
@@ -185,7 +248,14 @@ fn size_kept(region: &Region, options: &EnforceOptions) -> Option<(DVec2, DVec2)
 }
 
 fn unchanged(region: &Region) -> Enforced {
-    Enforced { region: region.clone(), changes: Vec::new(), added_mm2: 0.0, removed_mm2: 0.0, pressed: None }
+    Enforced {
+        region: region.clone(),
+        changes: Vec::new(),
+        added_mm2: 0.0,
+        removed_mm2: 0.0,
+        leaves_ends: false,
+        pressed: None,
+    }
 }
 
 /// What became of `before`.
@@ -216,6 +286,7 @@ fn changed(before: &Region, now: Region, options: &EnforceOptions) -> Enforced {
         changes,
         added_mm2: added.area_mm2(),
         removed_mm2: removed.area_mm2(),
+        leaves_ends: false,
         pressed: None,
     }
 }
@@ -235,6 +306,8 @@ struct Job {
     spacing: f64,
     within: (DVec2, DVec2),
     chord_mm: f64,
+    /// Whether slots and necks are mended: what ends blind and is no hair.
+    mends_ends: bool,
 }
 
 /// Both sides as they are.
@@ -242,6 +315,8 @@ struct Survey {
     cores: [Core; 2],
     /// What of the cores the other side leaves alone.
     guarded: [Kept; 2],
+    /// What of the core of the gaps is kept.
+    kept: Kept,
     lacking: [Vec<Stroke>; 2],
     index: EdgeIndex,
 }
@@ -258,7 +333,36 @@ impl Job {
             within,
             // Steps repeat, and each may leave the wanted width by a chord.
             chord_mm: (0.25 * options.chord_mm).max(1e-4 * least),
+            mends_ends: true,
         }
+    }
+
+    /// What may end blind in ink (0) or in gaps (1); with `has_no_necks`, no lump or pocket may.
+    fn tip(&self, side: usize, has_no_necks: bool) -> Tip {
+        let half = self.halves[side];
+        if half <= 0.0 || (side == 1 && !self.mends_ends) {
+            return Tip::ANY;
+        }
+        let uneven_mm = if has_no_necks && self.mends_ends { self.chord_mm } else { f64::INFINITY };
+        Tip { long_mm: TIP * 2.0 * half, uneven_mm }
+    }
+
+    /// Points of bays that are no notches: of those that are not to be widened, as they are short and have a pocket; with
+    /// `all`, of all that are too narrow.
+    fn bays(&self, survey: &Survey, all: bool) -> Vec<DVec2> {
+        let (core, half) = (&survey.cores[1], self.halves[1]);
+        let across = |node: &core::Node| core::across(&survey.index, node);
+        let kept = |tip: Tip| Kept::new(core, ENOUGH * half, tip, across).nodes;
+        let (bays, blind) = (kept(self.tip(1, true)), kept(Tip::ANY));
+        let others = if all { &blind } else { &survey.kept.nodes };
+        let is_bay = |&i: &usize| bays[i] && !others[i] && core.nodes[i].radius < half;
+        (0..bays.len()).filter(is_bay).map(|i| core.nodes[i].at).collect()
+    }
+
+    /// The region with those bays filled; `None` when none of them can be.
+    fn filled(&self, region: &Region, bays: &[DVec2]) -> Option<Region> {
+        let sliver_mm = SLIVER * self.chord_mm;
+        if bays.is_empty() { None } else { fill::filled(region, bays, GOOD * self.halves[1], sliver_mm) }
     }
 
     fn survey(&self, region: &Region) -> Survey {
@@ -268,18 +372,21 @@ impl Job {
         let hold = [0, 1].map(|side| self.guards[side] + 2.0 * WANTED * self.halves[1 - side]);
         let fineness = Fineness { enough, hold, spacing: self.spacing };
         let cores = cores(region, &index, &fineness);
-        let hair = if self.halves[0] > 0.0 { TIP * 2.0 * self.halves[0] } else { f64::INFINITY };
-        let tips = [hair, f64::INFINITY];
+        let tips = [self.tip(0, true), self.tip(1, false)];
         // A side of which nothing is asked is held together where it is narrow, but may lose its corners.
-        let kept =
-            [0, 1].map(|side| Kept::new(&cores[side], enough[side].max(self.guards[side]), tips[side]));
+        let kept = [0, 1].map(|side| {
+            Kept::new(&cores[side], enough[side].max(self.guards[side]), tips[side], |node| {
+                core::across(&index, node)
+            })
+        });
         let lacking = [0, 1].map(|side| {
             let radii = [enough[side], WANTED * self.halves[side]];
             let strokes = lacking(&cores[side], &kept[side], &index, radii, self.spacing);
             merged(&strokes, self.chord_mm)
         });
         let guarded = [0, 1].map(|side| kept[side].drawn_back(&cores[side], hold[side]));
-        Survey { cores, guarded, lacking, index }
+        let [_, kept] = kept;
+        Survey { cores, guarded, kept, lacking, index }
     }
 
     /// The region after one side has grown; `None` when that side lacks nothing.

@@ -105,6 +105,45 @@ fn ink_beside_a_narrow_gap_grows_on_its_other_side() {
     assert_eq!(Counts::of(&enforced.region), Counts::of(&wire));
 }
 
+/// A block of 20 by 10 mm with these slits taken out of it.
+fn slit(slits: &[Vec<DVec2>]) -> Region {
+    let mut paths = vec![rectangle(0.0, 0.0, 20.0, 10.0)];
+    paths.extend_from_slice(slits);
+    region(&paths)
+}
+
+#[test]
+fn a_long_slot_is_widened_and_no_deeper_than_it_was() {
+    let block = slit(&[rectangle(10.0, 4.0, 0.1, 6.0)]);
+    let enforced = enforce(&block, &options(0.5, 0.5)).unwrap();
+    assert_eq!(Counts::of(&enforced.region), Counts::of(&block));
+    let below = ink_at(&enforced.region, 10.05);
+    assert!(below.len() == 1 && (below[0][1] - 4.0).abs() < 0.05, "{below:?}");
+    for x in [9.82, 10.28] {
+        assert!(ink_at(&enforced.region, x)[0][1] < 5.0, "{x}");
+    }
+    assert!(enforced.removed_mm2 > 2.2, "{}", enforced.removed_mm2);
+}
+
+#[test]
+fn a_short_bay_with_a_pocket_is_filled() {
+    let bay = [(10.0, 10.0), (9.8, 9.7), (10.2, 9.2), (10.4, 9.5), (10.02, 9.7), (10.1, 10.0)];
+    let block = slit(&[bay.map(DVec2::from).to_vec()]);
+    let enforced = enforce(&block, &options(0.6, 0.6)).unwrap();
+    assert!((enforced.region.area_mm2() - 200.0).abs() < 0.02, "{}", enforced.region.area_mm2());
+    assert!(enforced.removed_mm2 < 1e-6);
+}
+
+#[test]
+fn slots_without_room_are_filled() {
+    // Between two slots no ink is left when they are as wide as gaps must be.
+    let block = slit(&[0, 1, 2, 3].map(|i| rectangle(9.0 + 0.5 * f64::from(i), 4.0, 0.1, 6.0)));
+    let enforced = enforce(&block, &options(0.6, 0.6)).unwrap();
+    assert_eq!(Counts::of(&enforced.region), Counts::of(&block));
+    let eroded = enforced.region.offset(-0.29, 0.001);
+    assert_eq!(Counts::of(&eroded), Counts::of(&block));
+}
+
 #[test]
 fn specks_and_pinholes_become_as_large_as_they_must() {
     let speck = region(&[circle(5.0, 5.0, 4.0, 64), circle(5.0, 5.0, 0.05, 16), circle(15.0, 5.0, 0.05, 16)]);
