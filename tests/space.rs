@@ -104,14 +104,16 @@ fn widths_hold_over_the_cut_too() {
 #[test]
 fn what_cannot_be_is_refused_with_its_place() {
     let room = Room::with(&["lace.svg"]);
-    room.write("cusp.csv", "0,0,0\n30,0,0\n0,0,0\n");
+    room.write("cusp.csv", "0,0,0\n30,0,0\n1,0,0\n");
+    room.write("back.csv", "0,0,0\n30,0,0\n0,0,0\n");
     room.write("tight.csv", "0,0,0\n30,0,0\n30,1,0\n0,1,0\n");
     room.write("words.csv", "0,0,0\n1,two,3\n");
     room.write("one.csv", "0,0,0\n");
     let refuses = |rest: &str, words: &[&str]| {
         room.refuses(&format!("band lace.svg --width 9mm -o a.stl --along {rest}"), 2, words);
     };
-    refuses("points:cusp.csv", &["a cusp at (30.0", "spread the points"]);
+    refuses("points:cusp.csv", &["a cusp at (3", "spread the points"]);
+    refuses("points:back.csv", &["2 point(s) make no curve; at least 3"]);
     refuses("points:tight.csv", &["folds at", "mm radius", "--thickness"]);
     refuses("points:words.csv", &["words.csv: line 2: '1,two,3' is not a point"]);
     refuses("points:one.csv", &["1 point(s) make no curve"]);

@@ -99,7 +99,8 @@ mod tests {
             prop_assert!(same_counts(&simpler, &region) && simpler.vertices() <= region.vertices());
             let edges = EdgeIndex::new(&simpler);
             for p in region.contours().flat_map(|c| c.points()).map(|&p| region.grid().to_mm(p)) {
-                prop_assert!(edges.nearest(p).unwrap().nearest(p).distance(p) <= tolerance * 1.000_001);
+                let off = edges.nearest(p).unwrap().nearest(p).distance(p);
+                prop_assert!(off <= tolerance * 1.000_001, "{} is off by {} > {}", p, off, tolerance);
             }
         }
     }

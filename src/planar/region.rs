@@ -135,6 +135,13 @@ impl Region {
             let twice = kept.iter().flat_map(|c| c.points()).find(|&&p| !met.insert(p));
             faults.extend(twice.map(|&p| Fault::Crossing(grid.to_mm(p))));
         }
+        // A spike of no width bounds nothing and is not in the result.
+        if faults.is_empty() && found < given {
+            let found: rustc_hash::FxHashSet<GridPoint> =
+                kept.iter().flat_map(|c| c.points()).copied().collect();
+            let lost = contours.iter().flat_map(|c| c.points()).find(|p| !found.contains(p));
+            faults.extend(lost.map(|&p| Fault::Crossing(grid.to_mm(p))));
+        }
         if faults.is_empty() && (kept.len() != contours.len() || given_area != found_area) {
             kept.sort_unstable();
             let odd = contours.iter().find(|c| kept.binary_search(c).is_err()).unwrap_or(&contours[0]);
@@ -301,6 +308,17 @@ mod tests {
         let again = Region::from_contours(grid(), region.contours().cloned().collect());
         assert_eq!(again.as_ref(), Ok(&region), "a filled region is valid");
         (region.components(), region.holes())
+    }
+
+    #[test]
+    fn a_spike_of_no_width_is_a_fault() {
+        let spike = path(&[(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (20.0, 10.0), (5.0, 10.0), (0.0, 10.0)]);
+        let Err(RegionError::Invalid { faults }) =
+            Region::from_contours(grid(), vec![Contour::new(spike).unwrap()])
+        else {
+            panic!("the spike would be lost");
+        };
+        assert!(matches!(faults[..], [Fault::Crossing(p)] if p == DVec2::new(20.0, 10.0)), "{faults:?}");
     }
 
     #[test]

@@ -215,8 +215,10 @@ impl Sampled {
         for pair in parameters.windows(2) {
             lengths.push(lengths[lengths.len() - 1] + length(&spline, pair[0], pair[1]));
         }
-        // By the lengths of chords, the speed is about 1.
-        if let Some(i) = parameters.iter().position(|&t| spline.at(t).velocity.length() < CUSP) {
+        // By the lengths of chords, the speed is about 1. A step in which it turns back goes through none.
+        let velocity = |i: usize| spline.at(parameters[i]).velocity;
+        let turns = |i: usize| i + 1 < parameters.len() && velocity(i).dot(velocity(i + 1)) < 0.0;
+        if let Some(i) = (0..parameters.len()).find(|&i| velocity(i).length() < CUSP || turns(i)) {
             return Err(SpaceError::Cusp { position: spline.at(parameters[i]).point, at_mm: lengths[i] });
         }
         let start = spline.at(0.0).velocity.normalize();
