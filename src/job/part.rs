@@ -84,8 +84,7 @@ impl Part {
             .map_err(|e| PartError::Job(JobError::Fabricate(e.into())))?;
         let cut_mm = best_cut(&outline.contours, length_mm);
         let touching = OutlineFault::Contact { position_mm: DVec2::new(MARGIN_MM, MARGIN_MM) };
-        let paths =
-            unrolled(&outline.contours, length_mm, cut_mm).ok_or(PartError::Untrue(touching))?;
+        let paths = unrolled(&outline.contours, length_mm, cut_mm).ok_or(PartError::Untrue(touching))?;
         let region = region_of(&paths, grid, shift)?;
         let sides_mm = [shift.x, shift.x + length_mm];
         let rolled = verify::rolled(&region, sides_mm).map_err(|_| PartError::Untrue(touching))?;
