@@ -46,7 +46,7 @@ pub(super) fn region(
     }
     let grid = Grid::for_extent(flattener.extent_mm)?;
     let union = Filler { grid }.union(&items)?;
-    let region = Region::fill(grid, &union, FillRule::Positive);
+    let region = Region::fill(grid, &union, FillRule::Positive).without_cracks();
     let Some((low, high)) = region.bounds_mm() else { return Err(ExemplarFault::NoInk) };
     check_precision(&artwork.items, scale, (high - low).max_element())?;
     Ok(region)

@@ -9,6 +9,10 @@ use super::grid::{Grid, GridError, GridPoint};
 use super::overlay::{self, FillRule, RawPart};
 use super::touch;
 
+/// A hole narrower than this, in steps of the grid, is a crack: corners are rounded by half a step each, crossings of edges once
+/// more, and again where further edges cross there. It is half a nanometre for a drawing of 100 mm.
+const CRACK_STEPS: f64 = 16.0;
+
 /// One connected component of a region.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Part {
@@ -135,17 +139,17 @@ impl Region {
             let twice = kept.iter().flat_map(|c| c.points()).find(|&&p| !met.insert(p));
             faults.extend(twice.map(|&p| Fault::Crossing(grid.to_mm(p))));
         }
+        if faults.is_empty() && (kept.len() != contours.len() || given_area != found_area) {
+            kept.sort_unstable();
+            let odd = contours.iter().find(|c| kept.binary_search(c).is_err()).unwrap_or(&contours[0]);
+            faults.push(Fault::Nesting(grid.to_mm(odd.points()[0])));
+        }
         // A spike of no width bounds nothing and is not in the result.
         if faults.is_empty() && found < given {
             let found: rustc_hash::FxHashSet<GridPoint> =
                 kept.iter().flat_map(|c| c.points()).copied().collect();
             let lost = contours.iter().flat_map(|c| c.points()).find(|p| !found.contains(p));
             faults.extend(lost.map(|&p| Fault::Crossing(grid.to_mm(p))));
-        }
-        if faults.is_empty() && (kept.len() != contours.len() || given_area != found_area) {
-            kept.sort_unstable();
-            let odd = contours.iter().find(|c| kept.binary_search(c).is_err()).unwrap_or(&contours[0]);
-            faults.push(Fault::Nesting(grid.to_mm(odd.points()[0])));
         }
         if faults.is_empty() {
             Ok(Self { grid, parts: parts.into_iter().map(Part::from_raw).collect() }.sorted())
@@ -221,6 +225,21 @@ impl Region {
             part.holes.retain(&mut keep);
         }
         (Self { grid: self.grid, parts }, specks)
+    }
+
+    /// The region without holes that are narrower than a few steps of its grid: where ink is united that was rounded to the
+    /// grid, they are cracks between its parts.
+    pub fn without_cracks(mut self) -> Self {
+        let is_crack = |hole: &Contour| {
+            let length = |(a, b): (GridPoint, GridPoint)| ((b.x - a.x) as f64).hypot((b.y - a.y) as f64);
+            let area = 0.5 * hole.doubled_area().unsigned_abs() as f64;
+            // Of what is long and narrow the outline is twice as long as itself.
+            area < CRACK_STEPS * 0.5 * hole.edges().map(length).sum::<f64>()
+        };
+        for part in &mut self.parts {
+            part.holes.retain(|hole| !is_crack(hole));
+        }
+        self
     }
 
     /// The grid of the coordinates.
@@ -308,6 +327,18 @@ mod tests {
         let again = Region::from_contours(grid(), region.contours().cloned().collect());
         assert_eq!(again.as_ref(), Ok(&region), "a filled region is valid");
         (region.components(), region.holes())
+    }
+
+    #[test]
+    fn cracks_are_closed_and_holes_are_not() {
+        let at =
+            |points: &[(i64, i64)]| points.iter().map(|&(x, y)| GridPoint::new(x, y)).collect::<Vec<_>>();
+        let around = at(&[(0, 0), (100_000, 0), (100_000, 100_000), (0, 100_000)]);
+        let crack = at(&[(100, 100), (100, 103), (90_000, 105), (90_000, 102)]);
+        let slot = at(&[(100, 200), (100, 220), (90_000, 220), (90_000, 200)]);
+        let dot = at(&[(500, 500), (500, 540), (540, 540), (540, 500)]);
+        let region = Region::fill(grid(), &[around, crack, slot, dot], FillRule::Positive);
+        assert_eq!((region.holes(), region.without_cracks().holes()), (3, 2));
     }
 
     #[test]
