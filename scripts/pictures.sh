@@ -41,7 +41,7 @@ band $exemplars/vine.svg --along circle:65mm --width 14mm --components 1 --close
   --pixels 1200 -o $pictures/solid.png
 # In space.
 band $exemplars/vine.svg --along ring:65mm --width 14mm --components 1 --closed-pattern --view iso --pixels 1200 -o $pictures/ring.png
-band $exemplars/filigree.svg --along ring:62mm --gap 26mm --width 22mm --components 1 --view iso --pixels 1200 -o $pictures/cuff.png
+band $exemplars/lace.svg --along ring:62mm --gap 24mm --width 18mm --components 1 --view iso --pixels 1200 -o $pictures/cuff.png
 band $exemplars/lace.svg --along line:60mm --width 14mm --components 1 --show seams,thin -o $pictures/seams.png
 # Where the beam goes: its way in red, as wide as the kerf, with its middle, over the part.
 kerf=0.5mm

@@ -167,7 +167,7 @@ fn a_file_that_may_not_grow_is_told_and_keeps_nothing() {
     std::fs::create_dir(room.path("out")).unwrap();
     let band = "\"$OPENWORK\" band vine.svg --along line:120mm -o out/a.svg -o out/a.stl";
     let (code, said, left) =
-        told(&shell(&room, &format!("ulimit -f 64; {band}; code=$?; ls -A out; exit $code")));
+        told(&shell(&room, &format!("ulimit -f 400; {band}; code=$?; ls -A out; exit $code")));
     assert_eq!((code, left.as_str()), (Some(2), ""), "{said}");
     assert!(said.contains("cannot write out/a.stl: File too large") && said.contains("ulimit -f"), "{said}");
 }

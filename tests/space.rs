@@ -98,7 +98,11 @@ fn widths_hold_over_the_cut_too() {
     let report = room.json("a.json");
     assert!(report["min_feature"]["width_mm"].as_f64().unwrap() > 0.4, "{}", report["min_feature"]);
     assert!(report["min_gap"]["width_mm"].as_f64().unwrap() > 0.2);
-    room.refuses(&format!("{job} --min-feature 2.5mm -o b.stl"), 4, &["narrower than", "--width"]);
+    room.refuses(
+        &format!("{job} --min-feature 2.5mm -o b.stl"),
+        4,
+        &["narrower than 2.577", "a larger --width"],
+    );
 }
 
 #[test]
@@ -109,6 +113,7 @@ fn what_cannot_be_is_refused_with_its_place() {
     room.write("tight.csv", "0,0,0\n30,0,0\n30,1,0\n0,1,0\n");
     room.write("words.csv", "0,0,0\n1,two,3\n");
     room.write("one.csv", "0,0,0\n");
+    room.write("far.csv", "20000,0,0\n20100,0,0\n");
     let refuses = |rest: &str, words: &[&str]| {
         room.refuses(&format!("band lace.svg --width 9mm -o a.stl --along {rest}"), 2, words);
     };
@@ -127,7 +132,16 @@ fn what_cannot_be_is_refused_with_its_place() {
     refuses("ring:65mm --thickness 0", &["--thickness"]);
     refuses("helix:60mm,pitch=8mm,turns=2", &["meets itself at", "a greater pitch"]);
     refuses("helix:60mm,pitch=8mm", &["it lacks its turns"]);
-    refuses("ring:65mm --chamfer 0.3mm", &["--chamfer", "plain edges"]);
+    refuses("helix:65mm,pitch=12mm,turns=6000", &["m long", "fewer turns"]);
+    refuses("helix:65mm,pitch=20mm,turns=1 --twist 0:0,500:180", &["a place at 500 mm"]);
+    refuses("points:far.csv", &["point 1", "move the curve nearer"]);
+    refuses("ring:65mm --round 3mm", &["--round", "no corners"]);
+    refuses("ring:65mm --chamfer 0.3mm", &["--chamfer", "for parts that lie flat"]);
+    refuses("ring:65mm --gap 0.2mm --min-gap 0.4mm", &["--gap", "less than the minimum gap"]);
+    refuses(
+        "helix:60mm,pitch=9.3mm,turns=2 --min-gap 0.5mm",
+        &["comes within 0.5 mm, the minimum gap, of itself"],
+    );
     refuses("ring:65mm --enforce --min-feature 0.4mm", &["--enforce", "--gap"]);
 }
 
@@ -172,5 +186,74 @@ proptest! {
         let found = read_stl(&std::fs::read(&file).unwrap()).unwrap();
         prop_assert!(found.faults.is_empty());
         prop_assert_eq!((found.shells.len(), found.genus), (1, report.holes as i64));
+    }
+}
+
+/// A closed curve with straight sides and tight corners, so that facets are needed in some places only.
+fn frame() -> String {
+    let corners = [(45.0, 20.0), (-45.0, 20.0), (-45.0, -20.0), (45.0, -20.0)];
+    let mut rows = Vec::new();
+    for (i, (x, y)) in corners.into_iter().enumerate() {
+        for k in 0..=4 {
+            let a = TAU * (i as f64 + f64::from(k) / 4.0) / 4.0;
+            rows.push(format!("{},{},0", x + 12.0 * a.cos(), y + 12.0 * a.sin()));
+        }
+    }
+    rows.push(rows[0].clone());
+    rows.join("\n")
+}
+
+#[test]
+fn facets_are_where_the_curve_bends() {
+    let room = Room::with(&["lattice.svg"]);
+    room.write("frame.csv", &frame());
+    let points: Vec<glam::DVec3> = frame()
+        .lines()
+        .map(|row| row.split(',').map(|x| x.parse::<f64>().unwrap()).collect::<Vec<_>>())
+        .map(|p| glam::DVec3::new(p[0], p[1], p[2]))
+        .collect();
+    let curve = openwork::domain::SpaceCurve::through(&points[..points.len() - 1], true).unwrap();
+    let n = 20_000;
+    let dense: Vec<glam::DVec3> =
+        (0..n).map(|i| curve.frame(curve.length_mm() * f64::from(i) / f64::from(n)).point).collect();
+    room.succeeds(
+        "band lattice.svg --along points:frame.csv --width 10mm --components 1 --closed-pattern -o a.stl",
+    );
+    room.succeeds(
+        "band lattice.svg --along helix:60mm,pitch=22mm,turns=4 --width 10mm --components 1 -o b.stl",
+    );
+    // Half of the thickness off the curve, all of it: middles of facets' edges are where flat facets are worst.
+    let off_frame = |p: glam::DVec3| {
+        let flat = glam::DVec2::new(p.x, p.y);
+        let near =
+            dense.iter().map(|q| flat.distance(glam::DVec2::new(q.x, q.y))).fold(f64::INFINITY, f64::min);
+        (near - 1.0).abs()
+    };
+    let off_helix = |p: glam::DVec3| (p.x.hypot(p.y) - 30.0).abs().min((p.x.hypot(p.y) - 32.0).abs());
+    let worst = |name: &str, off: &dyn Fn(glam::DVec3) -> f64| {
+        let corners = read_corners(&room.read(name));
+        let mut worst = 0.0f64;
+        for facet in corners.chunks_exact(3).step_by(7) {
+            let [a, b, c] = [facet[0], facet[1], facet[2]].map(glam::DVec3::from_array);
+            for (p, q) in [(a, b), (b, c), (c, a)] {
+                // Only edges of the front and of the back.
+                if off(p) < 1e-3 && off(q) < 1e-3 {
+                    worst = worst.max(off(p.midpoint(q)));
+                }
+            }
+        }
+        worst
+    };
+    assert!(worst("b.stl", &off_helix) < 0.01, "{}", worst("b.stl", &off_helix));
+    assert!(worst("a.stl", &off_frame) < 0.01, "{}", worst("a.stl", &off_frame));
+}
+
+#[test]
+fn the_flat_pattern_of_a_ring_is_cut_for_a_laser() {
+    let room = Room::with(&["vine.svg"]);
+    for width in ["12mm", "14mm", "16mm"] {
+        room.succeeds(&format!(
+            "band vine.svg --along ring:65mm --width {width} --components 1 --closed-pattern --kerf 0.15mm -o flat.dxf"
+        ));
     }
 }

@@ -270,6 +270,13 @@ fn say_band(report: &BandReport) {
         report.length_mm,
         report.seams.jumps
     );
+    if let Some(flat) = report.flat.as_ref().filter(|flat| flat.is_joined) {
+        say!(
+            "laid flat and cut open, as in drawings: {} component(s), {} hole(s)",
+            flat.components,
+            flat.holes
+        );
+    }
     say_bridges(report.bridges.as_ref(), BRIDGES_SHOWN);
     say_found(&report.made);
 }

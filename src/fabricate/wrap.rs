@@ -220,7 +220,8 @@ impl Lines {
     }
 }
 
-/// The middle of the widest gap between `taken` places within `room` of `near`; there is one between any two.
+/// The middle of the widest gap between `taken` places within `room` of `near`. Where all are taken it is one of them, and the
+/// triangulation fails.
 fn widest_gap(taken: &[i64], near: i64, room: i64) -> i64 {
     let (low, high) = (near - room.max(2), near + room.max(2));
     let from = taken.partition_point(|&x| x < low);

@@ -112,6 +112,7 @@ impl Band {
             let space = in_space.map(|curve| space::space_map(job, curve, cut.height_mm)).transpose()?;
             Ok::<_, JobError>((BandMap::new(curve, -half, half)?, space))
         })?;
+        let asked = job.tolerances;
         let job = &match &space {
             Some(map) => BandJob { tolerances: space::flat_tolerances(&job.tolerances, map)?, ..job.clone() },
             None => job.clone(),
@@ -132,6 +133,8 @@ impl Band {
             match made {
                 Ok((mut bands, is_fine_enough)) => {
                     let weighed = weighed(&ways, number);
+                    let told = space::note(&asked, &job.tolerances);
+                    bands.iter_mut().for_each(|band| band.report.made.notes.extend(told.clone()));
                     for report in bands.iter_mut().map(|band| &mut band.report) {
                         report.made.notes.extend(weighed_note(&weighed));
                         report.weighed.clone_from(&weighed);

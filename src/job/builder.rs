@@ -64,7 +64,7 @@ pub struct BandBuilder {
     pub(super) space: SpaceOptions,
     chord_mm: f64,
     min_feature_mm: f64,
-    min_gap_mm: f64,
+    pub(super) min_gap_mm: f64,
 }
 
 /// The thickness of a solid when none is asked for, in millimetres: five layers or more of most printers.

@@ -86,7 +86,7 @@ impl Band {
                     cutting.write(output, &self.job.options.picture, &narrow_places, &mut clock)?;
                 sizes.push(bytes.len());
                 // A certificate counts the pattern, and not what is left around it.
-                if laser.cuts(output.format()) && !laser.carve {
+                if laser.cuts(output.format()) && !laser.carve && self.part.joined.is_none() {
                     digest(output, &bytes);
                 }
                 pending.push(item);
@@ -154,8 +154,8 @@ impl Band {
         let narrowest_mm = found.min_feature.map(|n| n.width_mm);
         let lost = small::warnings(&self.part.region, &self.job.tolerances, outputs, narrowest_mm);
         report.made.notes.extend(lost);
-        let is_enforced = self.job.options.enforce;
-        report.made.notes.extend(blind::notes(&narrow_places, &self.kept_tolerances(), is_enforced));
+        let can_enforce = self.can_enforce();
+        report.made.notes.extend(blind::notes(&narrow_places, &self.kept_tolerances(), can_enforce));
         report.made.laser = cutting.map(|cutting| cutting.report);
         report.made.bytes = sizes;
         // What was found, or in space what was found in the solid or follows from the sides of the drawing.

@@ -246,7 +246,7 @@ pub fn extrude(
     let narrowest_mm = narrow_places.ink.first().map(|n| n.width_mm);
     notes.extend_from_slice(&raised.notes);
     notes.extend(small::warnings(&region, tolerances, outputs, narrowest_mm));
-    notes.extend(blind::notes(&narrow_places, tolerances, enforce));
+    notes.extend(blind::notes(&narrow_places, tolerances, !enforce));
     persist(pending, None)?;
     Ok(ExtrudeReport {
         schema_version: 1,

@@ -177,12 +177,19 @@ impl Band {
             .map_err(|error| JobError::Unjudged { file: DRAWING.into(), error })
     }
 
+    /// Whether widths could be enforced and were not.
+    pub(super) fn can_enforce(&self) -> bool {
+        !self.job.options.enforce && self.part.joined.is_none()
+    }
+
     fn mismatch(&self, file: PathBuf, mismatch: Mismatch, found: &NarrowPlaces) -> JobError {
         let scale = |narrowest: Option<&Narrowest>, wanted: f64, option: &str| {
             let factor = narrowest.map(|n| wanted / n.width_mm).filter(|f| f.is_finite() && *f < 100.0);
+            // A curve in space has room for so much, and a wider band is longer inside.
+            let factor = factor.filter(|_| self.space.is_none());
             let width = factor.map(|f| format!("--width {:.0}mm or more", (self.report.width_mm * f).ceil()));
-            // A tile cannot be mended, and what was mended has been.
-            let mend = if self.job.options.enforce { "" } else { "--enforce would mend it, or " };
+            // A tile and what is closed in space cannot be mended, and what was mended has been.
+            let mend = if self.can_enforce() { "--enforce would mend it, or " } else { "" };
             format!(
                 "; {mend}{} would do, or a smaller {option}",
                 width.unwrap_or_else(|| "a larger --width".to_owned())

@@ -8,6 +8,8 @@ use super::error::JobError;
 
 /// The largest file that is read.
 const MAX_BYTES: u64 = 64 << 20;
+/// Ends that are nearer to each other than this, in millimetres, are one: tables are written with rounded sines.
+const SAME_MM: f64 = 1e-3;
 
 /// A polyline in millimetres.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,7 +21,7 @@ pub(super) struct Points {
 
 /// Reads an OBJ (vertices and one polyline, or vertices in their order) or else a table with x, y and z in each row, apart by commas,
 /// semicolons, tabs or spaces. Empty rows, rows after `#`, and a first row without numbers are passed over. The curve is closed when its last point
-/// is its first.
+/// is its first, to a thousandth of a millimetre.
 ///
 /// # Errors
 /// [`JobError::Option`] names the line that cannot be read.
@@ -36,7 +38,8 @@ pub(super) fn read_points(file: &Path) -> Result<Points, JobError> {
     }
     let text = std::fs::read_to_string(file).map_err(unreadable)?;
     let is_obj = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("obj"));
-    let read = if is_obj { obj(&text) } else { table(&text) };
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    let read = if is_obj { obj(text) } else { table(text) };
     let mut points = read.map_err(|(line, found)| {
         let wanted = if is_obj {
             "write v x y z for each point and one l with their numbers"
@@ -45,7 +48,8 @@ pub(super) fn read_points(file: &Path) -> Result<Points, JobError> {
         };
         refuse(format!("line {line}: {found}"), wanted)
     })?;
-    let is_closed = points.len() > 2 && points.first() == points.last();
+    let gap_mm = |points: &[DVec3]| points[0].distance(points[points.len() - 1]);
+    let is_closed = points.len() > 2 && gap_mm(&points) < SAME_MM;
     if is_closed {
         points.pop();
     }
@@ -85,6 +89,7 @@ fn table(text: &str) -> Result<Vec<DVec3>, Wrong> {
 fn obj(text: &str) -> Result<Vec<DVec3>, Wrong> {
     let mut vertices = Vec::new();
     let mut polyline: Option<Vec<DVec3>> = None;
+    let mut face = None;
     for (line, row) in (1..).zip(text.lines()) {
         let mut words = row.split('#').next().unwrap_or_default().split_whitespace();
         match words.next() {
@@ -106,10 +111,15 @@ fn obj(text: &str) -> Result<Vec<DVec3>, Wrong> {
                 polyline =
                     Some(found.ok_or_else(|| (line, format!("'{row}' names a vertex that is not there")))?);
             }
+            Some("f") => face = face.or(Some(line)),
             _ => {}
         }
     }
-    Ok(polyline.unwrap_or(vertices))
+    match (polyline, face) {
+        (Some(polyline), _) => Ok(polyline),
+        (None, Some(line)) => Err((line, "it is a mesh without a polyline".to_owned())),
+        (None, None) => Ok(vertices),
+    }
 }
 
 #[cfg(test)]
@@ -132,7 +142,8 @@ mod tests {
             let points = read("a.csv", text).unwrap();
             assert_eq!((&points.points, points.is_closed), (&wanted, false), "{text}");
         }
-        assert!(read("a.csv", "0,0,0\n9,0,0\n9,9,0\n0,0,0\n").unwrap().is_closed);
+        assert!(read("a.csv", "0,0,0\n9,0,0\n9,9,0\n0,-9.8e-15,0\n").unwrap().is_closed);
+        assert_eq!(read("a.csv", "\u{feff}0,0,0\n9,0,0\n").unwrap().points.len(), 2);
         let error = read("a.csv", "0,0,0\n9,0\n").unwrap_err();
         assert!(error.contains("line 2: '9,0' is not a point; write x, y and z"), "{error}");
         assert!(read("a.csv", "x,y,z\nu,v,w\n").unwrap_err().contains("line 2"));
@@ -146,6 +157,11 @@ mod tests {
             points.is_closed && points.points.len() == 3 && points.points[0] == DVec3::new(9.0, 9.0, 3.0)
         );
         assert_eq!(read("a.obj", "v 1 2 3\nv 4 5 6\n").unwrap().points.len(), 2);
+        assert!(
+            read("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n")
+                .unwrap_err()
+                .contains("line 4: it is a mesh")
+        );
         assert!(read("a.obj", "v 0 0 0\nl 1 2\n").unwrap_err().contains("a vertex that is not there"));
         assert!(read("a.obj", "v 0 0 0\nv 1 0 0\nl 1 2\nl 2 1\n").unwrap_err().contains("a second polyline"));
         assert!(read_points(Path::new("none.csv")).is_err());

@@ -17,6 +17,9 @@ use crate::planar::Tolerances;
 /// The part of the chord error that facets along the curve may spend; flattening, bending and the drawing have the rest.
 const FACET_SHARE: f64 = 0.5;
 
+/// Widths of the flat pattern are whole parts of a millimetre, so many.
+const WIDTHS_PER_MM: f64 = 1e4;
+
 /// What is asked of a band along a curve in space, beyond the curve.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SpaceOptions {
@@ -45,6 +48,10 @@ pub(super) fn read_space_curve(options: &BandBuilder) -> Result<Option<SpaceCurv
     }
     let curve = match &options.along {
         CurveSpec::Ring { inner_mm } => match *gap_mm {
+            Some(gap_mm) if gap_mm > 0.0 && gap_mm < options.min_gap_mm => {
+                let found = format!("{gap_mm} mm is less than the minimum gap of {} mm", options.min_gap_mm);
+                return refuse("--gap", &found, "use a wider one, or leave it out for a closed ring");
+            }
             Some(gap_mm) => SpaceCurve::cuff(middle(*inner_mm), gap_mm, 0.5 * inner_mm)?,
             None => SpaceCurve::ring(middle(*inner_mm))?,
         },
@@ -66,6 +73,9 @@ pub(super) fn read_space_curve(options: &BandBuilder) -> Result<Option<SpaceCurv
         None => curve,
     };
     refuse_flat_edges(&options.print)?;
+    if options.round_mm.is_some() {
+        return refuse("--round", "a curve in space has no corners to round", "leave it out");
+    }
     if curve.is_closed() && (options.enforce || options.bridge_mm.is_some()) {
         let option = if options.enforce { "--enforce" } else { "--bridge" };
         let wanted = "give a ring a --gap, or ask for what the ornament gives by itself";
@@ -86,7 +96,7 @@ fn refuse_flat_edges(print: &PrintOptions) -> Result<(), JobError> {
         None => Ok(()),
         Some((option, _)) => Err(JobError::Option {
             option,
-            found: "it is for flat parts, and a band along a curve in space has plain edges".to_owned(),
+            found: "it is for parts that lie flat, and this band lies along a curve in space".to_owned(),
             wanted: "leave it out, or lay the band along a line, circle or path".to_owned(),
         }),
     }
@@ -100,30 +110,53 @@ pub(super) fn flat(curve: &SpaceCurve) -> Result<PlanarCurve, JobError> {
     })
 }
 
-/// The map of a band of `height_mm` along the curve. A ring or a helix is lifted so that it stands at z = 0.
+/// The map of a band of `height_mm` along the curve. A ring or a helix is lifted so that its lowest corner is at z = 0.
 pub(super) fn space_map(job: &BandJob, curve: SpaceCurve, height_mm: f64) -> Result<SpaceMap, JobError> {
     let (half, half_thickness) = (0.5 * height_mm, 0.5 * job.options.thickness_mm);
     let stands = matches!(job.options.along, CurveSpec::Ring { .. } | CurveSpec::Helix { .. });
-    let curve = if stands { curve.lifted(half) } else { curve };
-    Ok(SpaceMap::new(curve, [-half, half], [-half_thickness, half_thickness])?)
+    let map =
+        SpaceMap::new(curve, [-half, half], [-half_thickness, half_thickness], job.tolerances.min_gap_mm())?;
+    let low_mm = map.low_mm();
+    Ok(if stands { map.lifted(-low_mm) } else { map })
 }
 
-/// The tolerances of the flat pattern, so that those that were asked for hold in space, where lengths along the band are longer on the
-/// outer side of a bend and shorter on the inner one; and a note where that is much.
+/// The tolerances of the flat pattern, so that those that were asked for hold in space, where lengths are longer on the outer side of a
+/// bend and shorter on the inner one.
 pub(super) fn flat_tolerances(asked: &Tolerances, map: &SpaceMap) -> Result<Tolerances, JobError> {
     let [least, most] = map.scales();
-    let feature = asked.min_feature_mm() / least.min(1.0);
-    let gap = asked.min_gap_mm() / least.min(1.0);
-    Ok(Tolerances::new(asked.chord_mm() / most.max(1.0), feature, gap)?)
+    // Rounded up, so that messages can be read.
+    let wider = |mm: f64| (mm / least * WIDTHS_PER_MM).ceil() / WIDTHS_PER_MM;
+    let [feature, gap] = [asked.min_feature_mm(), asked.min_gap_mm()].map(wider);
+    Ok(Tolerances::new(asked.chord_mm() / most, feature, gap)?)
+}
+
+/// What to say where the flat pattern has to be wider than what was asked for.
+pub(super) fn note(asked: &Tolerances, flat: &Tolerances) -> Option<String> {
+    let widths = [
+        ("--min-feature", asked.min_feature_mm(), flat.min_feature_mm()),
+        ("--min-gap", asked.min_gap_mm(), flat.min_gap_mm()),
+    ];
+    let told = |(option, asked, flat): (&str, f64, f64)| format!("{option} {asked} mm is {flat:.3} mm there");
+    let told: Vec<String> = widths.into_iter().filter(|(_, asked, flat)| flat > asked).map(told).collect();
+    (!told.is_empty()).then(|| {
+        format!(
+            "lengths are shorter in bends and twists than in the flat pattern, which has more: {}",
+            told.join(", ")
+        )
+    })
 }
 
 /// The solid of a flat part along the curve.
 pub(super) fn solid(part: &Part, map: &SpaceMap, chord_mm: f64) -> Result<Solid, JobError> {
-    let lines = map.lines(FACET_SHARE * chord_mm);
-    let shift = part.shift_mm;
-    let lines_mm: Vec<f64> = lines.iter().map(|u| u + shift.x).collect();
-    let w_range = map.w_range_mm();
     let cut_mm = part.joined.as_ref().map_or(0.0, |joined| joined.cut_mm);
+    let lines = map.lines(cut_mm, FACET_SHARE * chord_mm);
+    let shift = part.shift_mm;
+    let mut lines_mm: Vec<f64> = lines.iter().map(|u| u - cut_mm + shift.x).collect();
+    if let Some(joined) = &part.joined {
+        let last = lines_mm.len() - 1;
+        [lines_mm[0], lines_mm[last]] = joined.sides_mm;
+    }
+    let w_range = map.w_range_mm();
     let place = |p: DVec2, side: usize| map.place(p - shift + DVec2::new(cut_mm, 0.0), w_range[side]);
     let sheet =
         fabricate::Sheet { place: &place, lines_mm: &lines_mm, is_joined: part.joined.is_some(), chord_mm };

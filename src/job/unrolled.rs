@@ -11,12 +11,15 @@ use crate::fit::OutlineContour;
 const PLACES: usize = 720;
 /// Vertices that are nearer to each other than this along the band have no room for the cut between them.
 const NARROW_MM: f64 = 1e-4;
+/// A cut that passes the end of a hole or of ink more closely than this leaves a sliver, which no beam makes.
+const CLEAR_MM: f64 = 0.6;
 
 /// Where the cut goes best: where as few strands as can be are cut, and those where they are widest. No vertex lies there.
 pub(super) fn best_cut(contours: &[OutlineContour], length_mm: f64) -> f64 {
     let mut taken: Vec<f64> =
         contours.iter().flat_map(|c| &c.points).map(|p| p.x.rem_euclid(length_mm)).collect();
     taken.sort_unstable_by(f64::total_cmp);
+    let ends = ends(contours, length_mm);
     let judged = |k: usize| {
         let near = (k as f64 + 0.5) / PLACES as f64 * length_mm;
         // The middle between two vertices.
@@ -31,11 +34,27 @@ pub(super) fn best_cut(contours: &[OutlineContour], length_mm: f64) -> f64 {
         contours.iter().for_each(|c| crossings_at(c, length_mm, place, &mut crossings));
         crossings.sort_unstable_by(f64::total_cmp);
         let ink: f64 = crossings.chunks_exact(2).map(|pair| pair[1] - pair[0]).sum();
-        (is_narrow, crossings.len(), -ink, place)
+        let next = ends.partition_point(|&x| x <= place);
+        let beside = [next.checked_sub(1), Some(next)].into_iter().flatten().filter_map(|i| ends.get(i));
+        let is_grazing = beside.map(|x| (x - place).abs()).fold(f64::INFINITY, f64::min) < CLEAR_MM;
+        (is_narrow, is_grazing, crossings.len(), -ink, place)
     };
     let all = (0..PLACES).map(judged);
-    let best = all.min_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
-    best.expect("there are many").3
+    let best = all.min_by(|a, b| (a.0, a.1, a.2).cmp(&(b.0, b.1, b.2)).then(a.3.total_cmp(&b.3)));
+    best.expect("there are many").4
+}
+
+/// Where contours turn back along the ring: the ends of their ink and of their holes, ascending.
+fn ends(contours: &[OutlineContour], length_mm: f64) -> Vec<f64> {
+    let mut ends = Vec::new();
+    for contour in contours {
+        let edges: Vec<(DVec2, DVec2)> = edges(contour, length_mm).collect();
+        let runs: Vec<f64> = edges.iter().map(|(a, b)| b.x - a.x).collect();
+        let turns = (0..runs.len()).filter(|&i| runs[i] * runs[(i + 1) % runs.len()] <= 0.0);
+        ends.extend(turns.map(|i| edges[i].1.x.rem_euclid(length_mm)));
+    }
+    ends.sort_unstable_by(f64::total_cmp);
+    ends
 }
 
 /// The heights at which a contour crosses the line at `place`, and those a whole length further.

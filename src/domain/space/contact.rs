@@ -10,7 +10,7 @@ use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
 use super::error::SpaceError;
-use super::map::SpaceMap;
+use super::map::{LEAST_SCALE, SpaceMap};
 
 /// Steps along the curve, as a part of the thickness. Longer, and one band could pass through another unseen.
 const STEP_PART: f64 = 0.5;
@@ -45,8 +45,8 @@ impl Block {
     }
 }
 
-/// The first place, in the order of the curve, at which the band meets itself.
-pub(super) fn first_contact(map: &SpaceMap) -> Option<SpaceError> {
+/// The first place, in the order of the curve, at which the band comes within `gap_mm` of itself.
+pub(super) fn first_contact(map: &SpaceMap, gap_mm: f64) -> Option<SpaceError> {
     let ([v0, v1], [w0, w1]) = (map.v_range_mm(), map.w_range_mm());
     let length = map.curve().length_mm();
     let n = ((length / (STEP_PART * (w1 - w0))).ceil() as usize).clamp(8, MOST);
@@ -60,10 +60,13 @@ pub(super) fn first_contact(map: &SpaceMap) -> Option<SpaceError> {
         Block {
             middle: frame.point + frame.across * (0.5 * (v0 + v1)) + frame.out * (0.5 * (w0 + w1)),
             axes: [frame.along, frame.across, frame.out],
-            reach: [0.5 * step * scale.max(0.0), 0.5 * (v1 - v0), 0.5 * (w1 - w0)],
+            reach: [0.5 * step * scale.max(0.0), 0.5 * (v1 - v0), 0.5 * (w1 - w0)]
+                .map(|reach| reach + 0.5 * gap_mm),
         }
     };
     let blocks: Vec<Block> = (0..n).map(block).collect();
+    // Boxes that are so near along the curve have ink between them and no gap: the inner side of a bend may be that much shorter.
+    let near = 1 + (gap_mm / (LEAST_SCALE * step)).ceil() as usize;
     let entry = |(i, block): (usize, &Block)| {
         let envelope = block.envelope();
         GeomWithData::new(Rectangle::from_corners(envelope.lower(), envelope.upper()), i)
@@ -71,13 +74,13 @@ pub(super) fn first_contact(map: &SpaceMap) -> Option<SpaceError> {
     let tree = RTree::bulk_load(blocks.iter().enumerate().map(entry).collect());
     let is_neighbour = |i: usize, j: usize| {
         let apart = i.abs_diff(j);
-        apart <= 1 || (map.curve().is_closed() && apart == n - 1)
+        apart <= near || (map.curve().is_closed() && apart >= n - near)
     };
     (0..n).find_map(|i| {
         let near = tree.locate_in_envelope_intersecting(blocks[i].envelope()).map(|entry| entry.data);
         let met = near.filter(|&j| j > i && !is_neighbour(i, j) && blocks[i].meets(&blocks[j])).min()?;
         let position = blocks[i].middle.midpoint(blocks[met].middle);
-        Some(SpaceError::Contact { position, at_mm: [place(i), place(met)] })
+        Some(SpaceError::Contact { position, at_mm: [place(i), place(met)], gap_mm })
     })
 }
 

@@ -15,6 +15,10 @@ const STEPS: usize = 32;
 const CUSP: f64 = 0.02;
 /// Points nearer to each other than this are one, in millimetres.
 const SAME_MM: f64 = 1e-6;
+/// How far from the origin a point may be, in millimetres: farther off, the 32-bit floats of files are a tenth of a micrometre apart and more.
+const FAR_MM: f64 = 2000.0;
+/// The greatest length of a curve in millimetres.
+const MAX_LENGTH_MM: f64 = 1e5;
 /// The least length of a curve in millimetres.
 const MIN_LENGTH_MM: f64 = 0.1;
 
@@ -89,8 +93,11 @@ impl SpaceCurve {
     fn on_cylinder(radius: f64, pitch_mm: f64, angle: f64, is_closed: bool) -> Result<Self, SpaceError> {
         let rise = pitch_mm / TAU;
         let length = radius.hypot(rise) * angle;
-        if !(radius > 0.0 && (MIN_LENGTH_MM..=1e6).contains(&length)) {
+        if !(radius > 0.0 && radius <= FAR_MM && length >= MIN_LENGTH_MM) {
             return Err(SpaceError::Radius { radius_mm: radius });
+        }
+        if length > MAX_LENGTH_MM {
+            return Err(SpaceError::Length { length_mm: length, most_mm: MAX_LENGTH_MM });
         }
         // What is open is so at the back, and a helix begins there.
         let start = if pitch_mm == 0.0 { FRAC_PI_2 + 0.5 * (TAU - angle) } else { FRAC_PI_2 };
@@ -108,7 +115,7 @@ impl SpaceCurve {
         if points.len() < wanted {
             return Err(SpaceError::Points { found: points.len(), wanted });
         }
-        if let Some(number) = points.iter().position(|p| !p.is_finite() || p.abs().max_element() > 1e5) {
+        if let Some(number) = points.iter().position(|p| !p.is_finite() || p.abs().max_element() > FAR_MM) {
             return Err(SpaceError::Coordinates { number: number + 1 });
         }
         let pairs = points.len() - usize::from(!is_closed);
@@ -135,8 +142,11 @@ impl SpaceCurve {
     /// The same with frames that are turned about the direction of travel as well, counter-clockwise seen against it.
     ///
     /// # Errors
-    /// [`SpaceError::Twist`] for a closed curve that is not turned by whole turns.
+    /// [`SpaceError::Twist`] for a closed curve that is not turned by whole turns, [`SpaceError::TwistPlace`] for places beyond the end.
     pub fn twisted(mut self, twist: &Twist) -> Result<Self, SpaceError> {
+        if let Some(place) = twist.places().find(|&place| place > self.length + 1e-6) {
+            return Err(SpaceError::TwistPlace { place_mm: place, length_mm: self.length });
+        }
         let by = twist.at(self.length, self.length) - twist.at(0.0, self.length);
         if self.is_closed && (by / TAU - (by / TAU).round()).abs() > 1e-9 {
             return Err(SpaceError::Twist { by_deg: by.to_degrees() });
@@ -149,6 +159,11 @@ impl SpaceCurve {
     pub fn lifted(mut self, by_mm: f64) -> Self {
         self.lift += by_mm;
         self
+    }
+
+    /// Places between its ends where its twist begins to change otherwise.
+    pub(super) fn creases(&self) -> impl Iterator<Item = f64> + '_ {
+        self.twist.places().filter(|&u| u > 0.0 && u < self.length)
     }
 
     /// The length in mm.

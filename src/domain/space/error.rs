@@ -8,7 +8,7 @@ use thiserror::Error;
 pub enum SpaceError {
     /// The radius of a ring or helix is no length, or makes none.
     #[error(
-        "a ring or helix with a radius of {radius_mm} mm cannot be made; use a diameter from 0.1 mm to 100 m"
+        "a ring or helix with a radius of {radius_mm} mm cannot be made; use a diameter from 0.1 mm to 4 m"
     )]
     Radius {
         /// The radius of the middle of the thickness.
@@ -32,6 +32,24 @@ pub enum SpaceError {
         /// By how much it rises each time.
         pitch_mm: f64,
     },
+    /// The curve is too long.
+    #[error("the curve is {:.1} m long, and at most {:.0} m can be made; use fewer turns", length_mm / 1000.0, most_mm / 1000.0)]
+    Length {
+        /// Its length.
+        length_mm: f64,
+        /// The greatest.
+        most_mm: f64,
+    },
+    /// A place of a twist is beyond the end of the curve.
+    #[error(
+        "the twist has a place at {place_mm} mm, but the curve is {length_mm:.2} mm long; use places up to that"
+    )]
+    TwistPlace {
+        /// The place.
+        place_mm: f64,
+        /// The length of the curve.
+        length_mm: f64,
+    },
     /// Too few points.
     #[error("{found} point(s) make no curve; at least {wanted} that lie apart are needed")]
     Points {
@@ -41,7 +59,9 @@ pub enum SpaceError {
         wanted: usize,
     },
     /// A point is not a place.
-    #[error("point {number} is not a place within 100 m of the origin")]
+    #[error(
+        "point {number} is not a place within 2 m of the origin, which is as far as the numbers of mesh files are fine enough; move the curve nearer"
+    )]
     Coordinates {
         /// Which, from 1.
         number: usize,
@@ -90,13 +110,22 @@ pub enum SpaceError {
     },
     /// The band meets itself.
     #[error(
-        "the band meets itself at ({:.2}, {:.2}, {:.2}) mm: {:.1} mm and {:.1} mm along the curve; use a narrower --width, a smaller --thickness, a greater pitch, or move the curve apart",
-        position.x, position.y, position.z, at_mm[0], at_mm[1]
+        "the band {} itself at ({:.2}, {:.2}, {:.2}) mm: {:.1} mm and {:.1} mm along the curve; use a narrower --width, a smaller --thickness, a greater pitch, or move the curve apart",
+        met(*gap_mm), position.x, position.y, position.z, at_mm[0], at_mm[1]
     )]
     Contact {
         /// Where.
         position: DVec3,
         /// The two places along the curve.
         at_mm: [f64; 2],
+        /// How far they have to be apart, if they may not only not meet.
+        gap_mm: f64,
     },
+}
+
+fn met(gap_mm: f64) -> String {
+    match gap_mm > 0.0 {
+        true => format!("comes within {gap_mm} mm, the minimum gap, of"),
+        false => "meets".to_owned(),
+    }
 }

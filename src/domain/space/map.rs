@@ -3,11 +3,11 @@
 use glam::{DVec2, DVec3};
 
 use super::contact::first_contact;
-use super::curve::SpaceCurve;
+use super::curve::{SpaceCurve, SpaceFrame};
 use super::error::SpaceError;
 
 /// What is left of lengths along the innermost edge of a bend, at least.
-const LEAST_SCALE: f64 = 0.15;
+pub(super) const LEAST_SCALE: f64 = 0.15;
 /// Places along the curve at which bends are looked at, for each millimetre and at least.
 const LOOKS_PER_MM: f64 = 4.0;
 const LOOKS: f64 = 256.0;
@@ -15,8 +15,9 @@ const LOOKS: f64 = 256.0;
 const MIN_CHORD_MM: f64 = 1e-4;
 /// The part of the chord error that is used, as the greatest error may lie between two samples.
 const CHORD_SHARE: f64 = 0.9;
-/// No facet is longer than this part of a closed curve, however straight.
-const TURN_PART: f64 = 1.0 / 12.0;
+/// No facet goes round more of a bend or a twist than this, in radians: where samples are farther apart, a whole turn could look
+/// straight.
+const MOST_TURN: f64 = 0.5;
 
 /// The map from (u, v, w) to space: u along a curve, v across the band, w through its thickness.
 ///
@@ -36,12 +37,19 @@ pub struct SpaceMap {
 impl SpaceMap {
     /// The map of the band of `v_range_mm` across `curve`, from `w_range_mm[0]`, its back, to `w_range_mm[1]`, its front.
     ///
+    /// No two places of the band may come within `gap_mm` of each other, which may be 0.
+    ///
     /// # Errors
     /// [`SpaceError::Fold`] and [`SpaceError::Contact`] name the place.
-    pub fn new(curve: SpaceCurve, v_range_mm: [f64; 2], w_range_mm: [f64; 2]) -> Result<Self, SpaceError> {
+    pub fn new(
+        curve: SpaceCurve,
+        v_range_mm: [f64; 2],
+        w_range_mm: [f64; 2],
+        gap_mm: f64,
+    ) -> Result<Self, SpaceError> {
         let map = Self { curve, v_range: v_range_mm, w_range: w_range_mm };
         map.check_folds()?;
-        first_contact(&map).map_or(Ok(map), Err)
+        first_contact(&map, gap_mm).map_or(Ok(map), Err)
     }
 
     /// The curve v = w = 0.
@@ -71,11 +79,40 @@ impl SpaceMap {
         1.0 - frame.curvature.dot(frame.across) * uv.y - frame.curvature.dot(frame.out) * w
     }
 
-    /// The least and the greatest of these factors anywhere on the band.
+    /// The least and the greatest factor by which lengths on the band are multiplied, in any direction and anywhere: the singular
+    /// values of the map on its front and its back. A twist lengthens the edges, and shears.
     pub fn scales(&self) -> [f64; 2] {
+        let places: Vec<f64> = self.looks().collect();
+        let frames: Vec<SpaceFrame> = places.iter().map(|&u| self.curve.frame(u)).collect();
+        let mut scales = [1.0f64, 1.0];
+        for (pair, u) in frames.windows(2).zip(places.windows(2)) {
+            let [from, to] = [pair[0], pair[1]];
+            // How fast the frame turns about the curve.
+            let twist = (to.across - from.across).dot(from.out) / (u[1] - u[0]);
+            let (a, b) = (from.curvature.dot(from.across), from.curvature.dot(from.out));
+            for (v, w) in (0..4).map(|i| (self.v_range[i % 2], self.w_range[i / 2])) {
+                let along = DVec3::new(1.0 - a * v - b * w, -twist * w, twist * v);
+                // Of the two columns S_u and V, whose lengths and angle are known.
+                let (square, shear) = (along.length_squared(), along.y);
+                let (half, apart) =
+                    (0.5 * (square + 1.0), (0.25 * (square - 1.0).powi(2) + shear * shear).sqrt());
+                let [least, most] = [half - apart, half + apart].map(|x| x.max(0.0).sqrt());
+                scales = [scales[0].min(least), scales[1].max(most)];
+            }
+        }
+        scales
+    }
+
+    /// The lowest z of the band, at the places at which bends are looked at.
+    pub fn low_mm(&self) -> f64 {
         let corners = || (0..4).map(|i| (self.v_range[i % 2], self.w_range[i / 2]));
-        let all = self.looks().flat_map(|u| corners().map(move |(v, w)| self.scale(DVec2::new(u, v), w)));
-        all.fold([1.0, 1.0], |[least, most], scale| [f64::min(least, scale), f64::max(most, scale)])
+        let at = |u: f64| corners().map(move |(v, w)| self.place(DVec2::new(u, v), w).z);
+        self.looks().flat_map(at).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The same band, `by_mm` higher.
+    pub fn lifted(self, by_mm: f64) -> Self {
+        Self { curve: self.curve.lifted(by_mm), ..self }
     }
 
     /// Places along the curve at which bends are looked at.
@@ -105,17 +142,28 @@ impl SpaceMap {
         Ok(())
     }
 
-    /// Places along the curve, from 0 to its length, between which flat facets stay within `chord_mm` of the band.
-    pub fn lines(&self, chord_mm: f64) -> Vec<f64> {
+    /// Places along the curve, from `start` to a whole length further, between which flat facets stay within `chord_mm` of the band.
+    /// The start is 0 on an open curve.
+    pub fn lines(&self, start: f64, chord_mm: f64) -> Vec<f64> {
         let tolerance = CHORD_SHARE * chord_mm.max(MIN_CHORD_MM);
+        let mut lines = vec![start];
+        // Stretches that turn no more than a facet may, and end where a twist changes.
         let length = self.curve.length_mm();
-        let longest = if self.curve.is_closed() { TURN_PART * length } else { length };
-        let first = (length / longest).ceil() as usize;
-        let mut lines = vec![0.0];
-        for i in 0..first {
-            let [from, to] = [i, i + 1].map(|i| length * i as f64 / first as f64);
-            self.refine(from, to, tolerance, &mut lines);
+        let creases = self.curve.creases().map(|u| if u < start { u + length } else { u });
+        let creases: Vec<f64> = creases.collect();
+        let mut places: Vec<f64> = self.looks().map(|u| u + start).chain(creases.iter().copied()).collect();
+        places.sort_by(f64::total_cmp);
+        let (mut from, mut turned) = (start, 0.0);
+        for pair in places.windows(2) {
+            let [a, b] = [pair[0], pair[1]].map(|u| self.curve.frame(u));
+            let is_crease = creases.contains(&pair[0]);
+            turned += a.along.angle_between(b.along).max(a.across.angle_between(b.across));
+            if (turned > MOST_TURN || is_crease) && pair[0] > from {
+                self.refine(from, pair[0], tolerance, &mut lines);
+                (from, turned) = (pair[0], 0.0);
+            }
         }
+        self.refine(from, start + length, tolerance, &mut lines);
         lines
     }
 
@@ -152,8 +200,8 @@ mod tests {
 
     #[test]
     fn a_ring_needs_as_many_lines_as_its_chords() {
-        let map = SpaceMap::new(SpaceCurve::ring(33.5).unwrap(), [-7.0, 7.0], [-1.0, 1.0]).unwrap();
-        let lines = map.lines(0.01);
+        let map = SpaceMap::new(SpaceCurve::ring(33.5).unwrap(), [-7.0, 7.0], [-1.0, 1.0], 0.0).unwrap();
+        let lines = map.lines(0.0, 0.01);
         // A chord of a circle of radius r errs by r (1 - cos(half of its angle)).
         let least = std::f64::consts::TAU / (2.0 * (1.0 - 0.01 / 34.5f64).acos());
         let n = lines.len() as f64 - 1.0;
@@ -169,7 +217,8 @@ mod tests {
     #[test]
     fn a_thickness_beyond_the_radius_folds() {
         let ring = SpaceCurve::ring(5.0).unwrap();
-        let Err(SpaceError::Fold { radius_mm, reach_mm, .. }) = SpaceMap::new(ring, [-3.0, 3.0], [-4.9, 4.9])
+        let Err(SpaceError::Fold { radius_mm, reach_mm, .. }) =
+            SpaceMap::new(ring, [-3.0, 3.0], [-4.9, 4.9], 0.0)
         else {
             panic!("4.9 mm of a radius of 5")
         };
@@ -183,10 +232,19 @@ mod tests {
                 SpaceCurve::helix(30.0, 12.0, 3.0).unwrap(),
                 [-0.5 * width, 0.5 * width],
                 [-1.0, 1.0],
+                0.0,
             )
         };
         assert!(band(11.0).is_ok());
-        let Err(SpaceError::Contact { at_mm: [a, b], position }) = band(12.5) else { panic!("12.5 > 12") };
+        let apart = |gap_mm: f64| {
+            let helix = SpaceCurve::helix(30.0, 12.0, 3.0).unwrap();
+            SpaceMap::new(helix, [-5.5, 5.5], [-1.0, 1.0], gap_mm)
+        };
+        assert!(apart(0.8).is_ok());
+        assert!(matches!(apart(1.2), Err(SpaceError::Contact { .. })));
+        let Err(SpaceError::Contact { at_mm: [a, b], position, .. }) = band(12.5) else {
+            panic!("12.5 > 12")
+        };
         let turn = std::f64::consts::TAU * 30.0;
         assert!((b - a - turn).abs() < 0.1 * turn, "{a} {b}");
         assert!((position.truncate().length() - 30.0).abs() < 2.0, "{position}");
@@ -200,11 +258,40 @@ mod tests {
                 .map(|i| std::f64::consts::TAU * f64::from(i) / 40.0)
                 .map(|a| DVec3::new(40.0 * a.sin(), 25.0 * (2.0 * a).sin(), lift * a.cos()))
                 .collect();
-            SpaceMap::new(SpaceCurve::through(&points, true).unwrap(), [-2.0, 2.0], [-0.5, 0.5])
+            SpaceMap::new(SpaceCurve::through(&points, true).unwrap(), [-2.0, 2.0], [-0.5, 0.5], 0.0)
         };
         assert!(eight(10.0).is_ok());
         let Err(SpaceError::Contact { position, .. }) = eight(0.0) else { panic!("it crosses itself") };
         assert!(position.length() < 4.0, "{position}");
+    }
+
+    #[test]
+    fn turns_are_seen_however_many() {
+        // All of it at a quarter, a half and three quarters is on its chord.
+        let helix = |turns| {
+            SpaceMap::new(SpaceCurve::helix(30.0, 22.0, turns).unwrap(), [-5.0, 5.0], [-1.0, 1.0], 0.0)
+        };
+        let lines = |turns| helix(turns).unwrap().lines(0.0, 0.01).len();
+        let counts = [lines(1.0), lines(4.0), lines(8.0)];
+        assert!(counts[1] > 3 * counts[0] && 10 * counts[2] > 18 * counts[1], "{counts:?}");
+        let line = SpaceCurve::through(&[DVec3::ZERO, DVec3::X * 200.0], false).unwrap();
+        let twisted = line.twisted(&"0:0,10:0,24:90,38:0".parse().unwrap()).unwrap();
+        let map = SpaceMap::new(twisted, [-5.0, 5.0], [-1.0, 1.0], 0.0).unwrap();
+        let lines = map.lines(0.0, 0.01);
+        assert!(lines.len() > 60 && [10.0, 24.0, 38.0].iter().all(|u| lines.contains(u)), "{}", lines.len());
+    }
+
+    #[test]
+    fn a_twist_lengthens_and_shears() {
+        let line = SpaceCurve::through(&[DVec3::ZERO, DVec3::X * 200.0], false).unwrap();
+        let twisted = line.twisted(&"3000".parse().unwrap()).unwrap();
+        let map = SpaceMap::new(twisted, [-6.0, 6.0], [-1.0, 1.0], 0.0).unwrap();
+        let c = 3000f64.to_radians() / 200.0;
+        let [least, most] = map.scales();
+        assert!(
+            most > (1.0 + (6.0 * c).powi(2)).sqrt() * 0.999 && least < 0.99 && least > 0.9,
+            "{least} {most}"
+        );
     }
 
     proptest! {
@@ -217,8 +304,8 @@ mod tests {
             let points: Vec<DVec3> = points.into_iter().map(DVec3::from).collect();
             let Ok(curve) = SpaceCurve::through(&points, false) else { return Ok(()) };
             let curve = curve.twisted(&twist.to_string().parse().unwrap()).unwrap();
-            let Ok(map) = SpaceMap::new(curve, [-1.5, 1.5], [-0.4, 0.4]) else { return Ok(()) };
-            for pair in map.lines(chord).windows(2) {
+            let Ok(map) = SpaceMap::new(curve, [-1.5, 1.5], [-0.4, 0.4], 0.0) else { return Ok(()) };
+            for pair in map.lines(0.0, chord).windows(2) {
                 for part in [0.1, 0.3, 0.5, 0.7, 0.9] {
                     for (v, w) in [(-1.5, 0.4), (0.0, -0.4), (1.5, 0.4)] {
                         let at = |u: f64| map.place(DVec2::new(u, v), w);

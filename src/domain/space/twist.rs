@@ -38,6 +38,11 @@ impl Twist {
         Self { whole: self.whole + other.whole, table: other.table.clone() }
     }
 
+    /// The places of the table, where the angle may begin to change otherwise.
+    pub(super) fn places(&self) -> impl Iterator<Item = f64> + '_ {
+        self.table.iter().map(|&(place, _)| place)
+    }
+
     /// The angle at `u` of `length` millimetres.
     pub(super) fn at(&self, u: f64, length: f64) -> f64 {
         let even = self.whole * u / length;
