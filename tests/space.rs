@@ -110,7 +110,6 @@ fn what_cannot_be_is_refused_with_its_place() {
     let room = Room::with(&["lace.svg"]);
     room.write("cusp.csv", "0,0,0\n30,0,0\n1,0,0\n");
     room.write("back.csv", "0,0,0\n30,0,0\n0,0,0\n");
-    room.write("tight.csv", "0,0,0\n20,0,0\n20.5,0.5,0\n20.5,20,0\n");
     room.write("words.csv", "0,0,0\n1,two,3\n");
     room.write("one.csv", "0,0,0\n");
     room.write("far.csv", "20000,0,0\n20100,0,0\n");
@@ -119,7 +118,7 @@ fn what_cannot_be_is_refused_with_its_place() {
     };
     refuses("points:cusp.csv", &["a cusp at (29.", "spread the points"]);
     refuses("points:back.csv", &["2 point(s) make no curve; at least 3"]);
-    refuses("points:tight.csv", &["folds at", "mm radius", "--thickness"]);
+    refuses("ring:1mm --thickness 30mm", &["folds at", "mm radius", "--thickness"]);
     refuses("points:words.csv", &["words.csv: line 2: '1,two,3' is not a point"]);
     refuses("points:one.csv", &["1 point(s) make no curve"]);
     refuses("points:none.csv", &["none.csv"]);
