@@ -38,16 +38,19 @@ pub(super) fn read_points(file: &Path) -> Result<Points, JobError> {
     }
     let text = std::fs::read_to_string(file).map_err(unreadable)?;
     let is_obj = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("obj"));
-    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
-    let read = if is_obj { obj(text) } else { table(text) };
-    let mut points = read.map_err(|(line, found)| {
+    points_of(&text, is_obj).map_err(|(line, found)| {
         let wanted = if is_obj {
             "write v x y z for each point and one l with their numbers"
         } else {
             "write x, y and z in millimetres in each row, such as 12.5, 0, 3"
         };
         refuse(format!("line {line}: {found}"), wanted)
-    })?;
+    })
+}
+
+fn points_of(text: &str, is_obj: bool) -> Result<Points, Wrong> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut points = if is_obj { obj(text)? } else { table(text)? };
     let gap_mm = |points: &[DVec3]| points[0].distance(points[points.len() - 1]);
     let is_closed = points.len() > 2 && gap_mm(&points) < SAME_MM;
     if is_closed {
@@ -127,10 +130,7 @@ mod tests {
     use super::*;
 
     fn read(name: &str, text: &str) -> Result<Points, String> {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join(name);
-        std::fs::write(&file, text).unwrap();
-        read_points(&file).map_err(|e| e.to_string().replace(&folder.path().display().to_string(), ""))
+        points_of(text, name.ends_with(".obj")).map_err(|(line, found)| format!("line {line}: {found}"))
     }
 
     #[test]
@@ -145,7 +145,7 @@ mod tests {
         assert!(read("a.csv", "0,0,0\n9,0,0\n9,9,0\n0,-9.8e-15,0\n").unwrap().is_closed);
         assert_eq!(read("a.csv", "\u{feff}0,0,0\n9,0,0\n").unwrap().points.len(), 2);
         let error = read("a.csv", "0,0,0\n9,0\n").unwrap_err();
-        assert!(error.contains("line 2: '9,0' is not a point; write x, y and z"), "{error}");
+        assert!(error.contains("line 2: '9,0' is not a point"), "{error}");
         assert!(read("a.csv", "x,y,z\nu,v,w\n").unwrap_err().contains("line 2"));
     }
 
