@@ -123,7 +123,7 @@ fn what_cannot_be_is_refused_with_its_place() {
     refuses("points:one.csv", &["1 point(s) make no curve"]);
     refuses("points:none.csv", &["none.csv"]);
     refuses("ring:65mm --gap 65mm", &["a gap of 65 mm does not fit a ring of 65 mm inside"]);
-    refuses("ring:65mm --gap 0", &["--gap"]);
+    refuses("ring:65mm --gap 0", &["a gap of 0 mm does not fit"]);
     refuses("ring:65mm --twist 90", &["a twist of 90 degrees does not close"]);
     refuses("ring:65mm --twist abc", &["'abc' is no twist"]);
     refuses("line:65mm --twist 90", &["--twist", "a band in the plane has no twist"]);
