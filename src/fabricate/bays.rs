@@ -8,7 +8,6 @@ use glam::DVec2;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::kerf::difference;
 use crate::planar::{GridError, Region};
 
 /// Slivers thinner than so many chord errors are rounding.
@@ -42,7 +41,7 @@ pub fn filled_bays(
     let grid = cut.grid();
     let arc_mm = (0.25 * chord_mm).min(ARC_PART * kerf_mm);
     let left = cut.offset(-0.5 * kerf_mm, arc_mm);
-    let filled = difference(&left, &ink.placed(grid, |p| p)?);
+    let filled = left.without(&ink.placed(grid, |p| p)?);
     let sliver_mm = SLIVER * chord_mm;
     let solid = filled.offset(-0.5 * sliver_mm, arc_mm).offset(0.5 * sliver_mm, arc_mm);
     let bays = solid.parts().iter().map(|part| {

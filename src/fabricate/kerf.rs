@@ -108,7 +108,7 @@ pub fn compensated(region: &Region, kerf_mm: f64, chord_mm: f64) -> Result<Regio
     }
     let frame = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
     let frame: Result<Vec<GridPoint>, GridError> = frame.into_iter().map(|p| grid.snap(p)).collect();
-    let gaps = difference(&Region::fill(grid, &[frame?], FillRule::NonZero), &ink);
+    let gaps = Region::fill(grid, &[frame?], FillRule::NonZero).without(&ink);
     let Some(pieces) = eroded(&gaps, radius_mm, chord_mm) else {
         let (position_mm, width_mm) = first_loss(&gaps, radius_mm, chord_mm);
         return Err(KerfError::Gap { position_mm, width_mm, kerf_mm });
@@ -154,13 +154,6 @@ fn reversed(contour: &Contour) -> Contour {
     Contour::new(points).expect("a contour stays one, the other way round")
 }
 
-/// The points of `a` that are not in `b`.
-pub(super) fn difference(a: &Region, b: &Region) -> Region {
-    let mut paths: Vec<Vec<GridPoint>> = a.contours().map(|c| c.points().to_vec()).collect();
-    paths.extend(b.contours().map(|c| c.points().iter().rev().copied().collect()));
-    Region::fill(a.grid(), &paths, FillRule::Positive)
-}
-
 /// What erosion by `radius_mm` leaves of `ink`, if that is one piece of each component with as many holes.
 /// Crumbs that vanish with `chord_mm` more are dropped, as the tip of a polygon that stands for a cusp does not
 /// narrow evenly.
@@ -187,11 +180,7 @@ fn eroded(ink: &Region, radius_mm: f64, chord_mm: f64) -> Option<Vec<Part>> {
 /// Which of the parts holds `piece`, which lies inside of one of them.
 fn home(parts: &[Part], piece: &Part) -> Option<usize> {
     let p = piece.exterior().points()[0];
-    let inside = |contour: &Contour| {
-        let (low, high) = contour.bounds();
-        (low.x..=high.x).contains(&p.x) && (low.y..=high.y).contains(&p.y) && contour.contains(p)
-    };
-    parts.iter().position(|part| inside(part.exterior()) && !part.holes().iter().any(inside))
+    parts.iter().position(|part| part.covers(p))
 }
 
 /// Where erosion changes the counts of `ink` first, and how wide the ink is there. It must do so at `radius_mm`.
@@ -210,7 +199,7 @@ fn first_loss(ink: &Region, radius_mm: f64, chord_mm: f64) -> (DVec2, f64) {
     let arc_mm = ARC_PART * radius_mm;
     let before = if kept_mm > 0.0 { ink.offset(-kept_mm, arc_mm) } else { ink.clone() };
     let after = ink.offset(-lost_mm, arc_mm);
-    let residue = difference(&before, &after.offset(1.01 * (lost_mm - kept_mm), arc_mm));
+    let residue = before.without(&after.offset(1.01 * (lost_mm - kept_mm), arc_mm));
     let extent = |part: &Part| {
         let (low, high) = part.exterior().bounds();
         (high.x - low.x).max(high.y - low.y)
@@ -220,7 +209,7 @@ fn first_loss(ink: &Region, radius_mm: f64, chord_mm: f64) -> (DVec2, f64) {
     let counts = |region: &Region| (region.components(), region.holes());
     let changes = |place: &&&Part| {
         let alone = Region::from_contours(ink.grid(), place.contours().cloned().collect());
-        alone.is_ok_and(|alone| counts(&difference(&before, &alone)) != counts(&before))
+        alone.is_ok_and(|alone| counts(&before.without(&alone)) != counts(&before))
     };
     let found = places.iter().take(TRIED).find(changes).or(places.first()).copied();
     let place = found.or(before.parts().first()).or(ink.parts().first()).expect("there is ink to lose");
@@ -355,7 +344,7 @@ mod tests {
                     prop_assert!(distance(&back, &shape) <= allowed);
                     prop_assert!(distance(&shape, &back) <= allowed);
                     // The beam leaves at least the shape: the symmetric difference is what it cannot reach.
-                    let lost = difference(&shape, &back.placed(shape.grid(), |p| p).unwrap());
+                    let lost = shape.without(&back.placed(shape.grid(), |p| p).unwrap());
                     prop_assert!(lost.area_mm2() <= 0.1 * CHORD * shape.vertices() as f64, "{}", lost.area_mm2());
                     let corner = (1.0 - std::f64::consts::FRAC_PI_4) * 0.25 * kerf_mm * kerf_mm;
                     let grown = back.area_mm2() - shape.area_mm2();

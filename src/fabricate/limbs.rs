@@ -9,7 +9,6 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::kerf::difference;
 use crate::planar::{Grid, GridError, GridPoint, Part, Region};
 
 /// What an opening takes in so many kerfs may be a tip: 20 is that of an angle of 3 degrees. Less, and ornaments with fine tips are
@@ -61,7 +60,7 @@ fn thin_limbs(ink: &Region, kerf_mm: f64, chord_mm: f64) -> Vec<BurntLimb> {
     let arc_mm = (0.25 * chord_mm).min(ARC_PART * radius_mm);
     // A chord more, or slivers of rounding would hang together all along the outline.
     let opened = ink.offset(-radius_mm, arc_mm).offset(radius_mm + chord_mm.min(0.1 * kerf_mm), arc_mm);
-    let lost = difference(ink, &opened);
+    let lost = ink.without(&opened);
     lost.parts().iter().map(|part| limb(&lost, part)).collect()
 }
 

@@ -24,14 +24,7 @@ pub fn thin_everywhere(region: &Region, width_mm: f64) -> Vec<DVec2> {
     let mut is_lost = vec![true; doubtful.len()];
     for piece in left.parts() {
         let p = piece.exterior().points()[0];
-        let holds = |part: &&Part| {
-            let (low, high) = part.exterior().bounds();
-            (low.x..=high.x).contains(&p.x)
-                && (low.y..=high.y).contains(&p.y)
-                && part.exterior().contains(p)
-                && !part.holes().iter().any(|hole| hole.contains(p))
-        };
-        if let Some(i) = doubtful.iter().position(holds) {
+        if let Some(i) = doubtful.iter().position(|part| part.covers(p)) {
             is_lost[i] = false;
         }
     }

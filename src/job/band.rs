@@ -172,8 +172,11 @@ impl Band {
             }
             band.enforce(Border::Round, clock)?;
             // What does not pass is left for `deliver` to tell of, which knows the names of files.
-            let (drawn, raised) = clock.both(|clock| band.drawn(clock), |clock| band.raised(outputs, clock));
-            (band.drawn, band.raised) = (drawn.as_ref().ok().cloned(), raised.ok());
+            let ahead = |clock: &mut Clock<'_>| {
+                (!outputs.is_empty()).then(|| band.raised(outputs, clock).ok()).flatten()
+            };
+            let (drawn, raised) = clock.both(|clock| band.drawn(clock), ahead);
+            (band.drawn, band.raised) = (drawn.as_ref().ok().cloned(), raised);
             if let Err(JobError::Mismatch { mismatch, .. }) = drawn {
                 is_fine_enough &= !matches!(mismatch, Mismatch::Components { .. } | Mismatch::Holes { .. });
             }

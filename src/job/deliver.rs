@@ -1,5 +1,7 @@
 //! From a band to its files: every output encoded, read again and counted, and what was found in them told.
 
+use std::borrow::Cow;
+
 use super::band::Band;
 use super::blind;
 use super::certificate::{FileDigest, sha256};
@@ -47,18 +49,22 @@ impl Band {
         clock.times.clone_from(&report.made.times);
         // What was not made ahead is made now: the solid knows nothing of the drawing.
         let (drawn, raised) = clock.both(
-            |clock| self.drawn.clone().map_or_else(|| self.drawn(clock), Ok),
-            |clock| {
-                let ahead = self.raised.clone().filter(|raised| raised.is_for(outputs));
-                ahead.map_or_else(|| self.raised(outputs, clock), Ok)
+            |clock| match &self.drawn {
+                Some(ahead) => Ok(Cow::Borrowed(ahead)),
+                None => self.drawn(clock).map(Cow::Owned),
+            },
+            |clock| match self.raised.as_ref().filter(|raised| raised.is_for(outputs)) {
+                Some(ahead) => Ok(Cow::Borrowed(ahead)),
+                None => self.raised(outputs, clock).map(Cow::Owned),
             },
         );
-        let Drawn { drawing, found } = drawn.map_err(|error| match error {
+        let drawn = drawn.map_err(|error| match error {
             JobError::Mismatch { mismatch, remedy, .. } => {
                 JobError::Mismatch { file: shown(outputs), mismatch, remedy }
             }
             error => error,
         })?;
+        let Drawn { drawing, found } = &*drawn;
         let raised = raised?;
         let laser = &self.job.options.laser;
         let mut cutting = match laser.is_needed(outputs) {
@@ -101,7 +107,7 @@ impl Band {
                         digest(output, drawing.text.as_bytes());
                     }
                     sizes.push(drawing.text.len());
-                    let bytes = drawing.text.clone().into_bytes();
+                    let bytes = drawing.text.as_bytes();
                     clock.time(Stage::Verify, || Pending::unchanged(output.target(), bytes))?
                 }
                 Format::Stl | Format::Threemf | Format::Obj => {
@@ -113,7 +119,7 @@ impl Band {
                     report.made.shells = Some(found.shells.len());
                     report.made.genus = Some(found.genus);
                     report.made.volume_mm3 = Some(found.volume_mm3);
-                    clock.time(Stage::Verify, || Pending::unchanged(output.target(), bytes.clone()))?
+                    clock.time(Stage::Verify, || Pending::unchanged(output.target(), bytes))?
                 }
                 Format::Png => {
                     let bridges = self.report.bridges.as_ref().map_or(&[][..], |b| &b.bridges);

@@ -211,7 +211,7 @@ pub fn extrude(
                 let file = raised.file(output.format()).expect("its output asked for it");
                 sizes.push(file.bytes.len());
                 solid = Some(file.found.clone());
-                clock.time(Stage::Verify, || Pending::unchanged(target, file.bytes.clone()))?
+                clock.time(Stage::Verify, || Pending::unchanged(target, &file.bytes))?
             }
             Format::Svg => {
                 let chord_mm = tolerances.chord_mm();

@@ -216,8 +216,8 @@ impl Pending {
     }
 
     /// The same for bytes that have passed: what is read again must be those.
-    pub(super) fn unchanged(target: &Target, bytes: Vec<u8>) -> Result<Self, JobError> {
-        let pending = Self::new(target, bytes.clone())?;
+    pub(super) fn unchanged(target: &Target, bytes: &[u8]) -> Result<Self, JobError> {
+        let pending = Self::new(target, bytes.to_vec())?;
         if pending.read_again()? != bytes {
             let source = std::io::Error::other("the file differs from what was written to it");
             return Err(ExportError::Write { path: target.to_string().into(), source }.into());

@@ -72,7 +72,7 @@ pub(super) fn read_space_curve(options: &BandBuilder) -> Result<Option<SpaceCurv
         Some(twist) => curve.twisted(twist)?,
         None => curve,
     };
-    refuse_flat_edges(&options.print)?;
+    refuse_flat_only(&options.print)?;
     if options.round_mm.is_some() {
         return refuse("--round", "a curve in space has no corners to round", "leave it out");
     }
@@ -84,8 +84,8 @@ pub(super) fn read_space_curve(options: &BandBuilder) -> Result<Option<SpaceCurv
     Ok(Some(curve))
 }
 
-/// Edges that follow the surface are not made.
-fn refuse_flat_edges(print: &PrintOptions) -> Result<(), JobError> {
+/// Refuses what is made for parts that lie flat only.
+fn refuse_flat_only(print: &PrintOptions) -> Result<(), JobError> {
     let given = [
         ("--chamfer", print.chamfer_mm.is_some()),
         ("--taper", print.taper_deg.is_some()),

@@ -35,6 +35,11 @@ impl Part {
     pub fn contours(&self) -> impl Iterator<Item = &Contour> {
         std::iter::once(&self.exterior).chain(&self.holes)
     }
+
+    /// Whether `p` lies strictly inside of the outer boundary and of no hole, exactly.
+    pub fn covers(&self, p: GridPoint) -> bool {
+        self.exterior.contains(p) && !self.holes.iter().any(|hole| hole.contains(p))
+    }
 }
 
 /// A set of the plane bounded by simple, pairwise disjoint polygons on a [`Grid`]: polygons with holes,
@@ -181,6 +186,13 @@ impl Region {
         }
         self.parts.sort_unstable();
         self
+    }
+
+    /// The points that are not in `other`, which is on the same grid.
+    pub fn without(&self, other: &Self) -> Self {
+        let taken = other.contours().map(|c| c.points().iter().rev().copied().collect());
+        let paths: Vec<Vec<GridPoint>> = self.contours().map(|c| c.points().to_vec()).chain(taken).collect();
+        Self::fill(self.grid, &paths, FillRule::Positive)
     }
 
     /// The points within `radius_mm` of the region, or with a negative radius those deeper inside than that.

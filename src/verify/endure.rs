@@ -94,10 +94,7 @@ impl<'a> Homes<'a> {
     fn of(&self, inner: &Part) -> Option<usize> {
         let p = inner.exterior().points()[0];
         self.parts.iter().position(|(part, (low, high))| {
-            (low.x..=high.x).contains(&p.x)
-                && (low.y..=high.y).contains(&p.y)
-                && part.exterior().contains(p)
-                && !part.holes().iter().any(|hole| hole.contains(p))
+            (low.x..=high.x).contains(&p.x) && (low.y..=high.y).contains(&p.y) && part.covers(p)
         })
     }
 }

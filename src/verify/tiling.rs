@@ -96,24 +96,14 @@ pub fn tiling(tile: &Region) -> Result<Tiling, TilingFault> {
     ];
     let mut owner: Vec<usize> = (0..tile.components()).collect();
     for (axis, (near, far, names)) in sides.iter().enumerate() {
-        let odd = |one: &[Interval], other: &[Interval]| {
-            one.iter().find(|i| !other.iter().any(|j| (i.from, i.to) == (j.from, j.to))).map(|i| i.from)
-        };
-        let faults = [(odd(near, far), 0, names[1]), (odd(far, near), 1, names[0])];
-        for (found, is_far, opposite) in faults {
-            let Some(along) = found else { continue };
-            let at = match (axis, is_far) {
-                (0, 0) => GridPoint::new(low.x, along),
-                (0, _) => GridPoint::new(high.x, along),
-                (_, 0) => GridPoint::new(along, low.y),
-                _ => GridPoint::new(along, high.y),
+        glue(near, far, &mut owner).map_err(|(along, is_far)| {
+            let corner = if is_far { high } else { low };
+            let at = match axis {
+                0 => GridPoint::new(corner.x, along),
+                _ => GridPoint::new(along, corner.y),
             };
-            return Err(TilingFault::Side { position_mm: grid.to_mm(at), opposite });
-        }
-        for (a, b) in near.iter().zip(far) {
-            let (a, b) = (root(&owner, a.part), root(&owner, b.part));
-            owner[a.max(b)] = a.min(b);
-        }
+            TilingFault::Side { position_mm: grid.to_mm(at), opposite: names[usize::from(!is_far)] }
+        })?;
     }
     let (joins_across, joins_up) = (sides[0].0.len(), sides[1].0.len());
     if joins_across + joins_up == 0 {
@@ -163,23 +153,33 @@ pub fn rolled(strip: &Region, sides_mm: [f64; 2]) -> Result<Rolled, TilingFault>
     let across = |p: GridPoint| (p.x, p.y);
     let [left, right] = sides_mm.map(|x| grid.steps(x));
     let [near, far] = [left, right].map(|x| intervals(strip, x, across));
-    let ends = |intervals: &[Interval]| intervals.iter().map(|i| (i.from, i.to)).collect::<Vec<_>>();
-    if ends(&near) != ends(&far) {
-        let (lost, x, opposite) =
-            match near.iter().find(|i| !far.iter().any(|j| (i.from, i.to) == (j.from, j.to))) {
-                Some(lost) => (lost.from, left, "right"),
-                None => (far.first().map_or(0, |i| i.from), right, "left"),
-            };
-        return Err(TilingFault::Side { position_mm: grid.to_mm(GridPoint::new(x, lost)), opposite });
-    }
     let mut owner: Vec<usize> = (0..strip.components()).collect();
-    for (a, b) in near.iter().zip(&far) {
-        let (a, b) = (root(&owner, a.part), root(&owner, b.part));
-        owner[a.max(b)] = a.min(b);
-    }
+    glue(&near, &far, &mut owner).map_err(|(along, is_far)| {
+        let (x, opposite) = if is_far { (right, "left") } else { (left, "right") };
+        TilingFault::Side { position_mm: grid.to_mm(GridPoint::new(x, along)), opposite }
+    })?;
     let components = (0..owner.len()).filter(|&part| owner[part] == part).count();
     let holes = components as i64 - (euler(strip) - near.len() as i64);
     Ok(Rolled { joins: near.len(), components, holes: holes.try_into().expect("a Betti number") })
+}
+
+/// Unites the owners of ink that meets where one side is glued to another. Or where an interval begins that the other side does not
+/// have, and whether it is on the far side.
+fn glue(near: &[Interval], far: &[Interval], owner: &mut [usize]) -> Result<(), (i64, bool)> {
+    let odd = |one: &[Interval], other: &[Interval]| {
+        one.iter().find(|i| !other.iter().any(|j| (i.from, i.to) == (j.from, j.to))).map(|i| i.from)
+    };
+    if let Some(along) = odd(near, far) {
+        return Err((along, false));
+    }
+    if let Some(along) = odd(far, near) {
+        return Err((along, true));
+    }
+    for (a, b) in near.iter().zip(far) {
+        let (a, b) = (root(owner, a.part), root(owner, b.part));
+        owner[a.max(b)] = a.min(b);
+    }
+    Ok(())
 }
 
 /// So many copies of `tile` to the right and up, `pitch` apart, united.

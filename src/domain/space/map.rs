@@ -32,6 +32,7 @@ pub struct SpaceMap {
     curve: SpaceCurve,
     v_range: [f64; 2],
     w_range: [f64; 2],
+    scales: [f64; 2],
 }
 
 impl SpaceMap {
@@ -47,8 +48,10 @@ impl SpaceMap {
         w_range_mm: [f64; 2],
         gap_mm: f64,
     ) -> Result<Self, SpaceError> {
-        let map = Self { curve, v_range: v_range_mm, w_range: w_range_mm };
+        let scales = [1.0; 2];
+        let mut map = Self { curve, v_range: v_range_mm, w_range: w_range_mm, scales };
         map.check_folds()?;
+        map.scales = map.measured_scales();
         first_contact(&map, gap_mm).map_or(Ok(map), Err)
     }
 
@@ -82,6 +85,10 @@ impl SpaceMap {
     /// The least and the greatest factor by which lengths on the band are multiplied, in any direction and anywhere: the singular
     /// values of the map on its front and its back. A twist lengthens the edges, and shears.
     pub fn scales(&self) -> [f64; 2] {
+        self.scales
+    }
+
+    fn measured_scales(&self) -> [f64; 2] {
         let places: Vec<f64> = self.looks().collect();
         let frames: Vec<SpaceFrame> = places.iter().map(|&u| self.curve.frame(u)).collect();
         let mut scales = [1.0f64, 1.0];

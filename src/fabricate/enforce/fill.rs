@@ -7,7 +7,6 @@
 use glam::DVec2;
 
 use super::super::Counts;
-use super::grow::difference;
 use crate::planar::{FillRule, GridPoint, Part, Region};
 
 /// Chords of round joins are at most this part of the radius.
@@ -20,11 +19,11 @@ pub(super) fn filled(region: &Region, points: &[DVec2], radius_mm: f64, sliver_m
     let arc_mm = sliver_mm.min(ARC_PART * radius_mm);
     let closed = region.offset(radius_mm, arc_mm).offset(-radius_mm, arc_mm);
     // Without slivers along the outline, and with a seam to overlap it.
-    let added = difference(&closed, region).offset(-sliver_mm, sliver_mm).offset(2.0 * sliver_mm, sliver_mm);
+    let added = closed.without(region).offset(-sliver_mm, sliver_mm).offset(2.0 * sliver_mm, sliver_mm);
     let points: Vec<GridPoint> =
         points.iter().map(|p| GridPoint::new(grid.steps(p.x), grid.steps(p.y))).collect();
     let bays: Vec<&Part> =
-        added.parts().iter().filter(|part| points.iter().any(|&p| covers(part, p))).collect();
+        added.parts().iter().filter(|part| points.iter().any(|&p| part.covers(p))).collect();
     let before = Counts::of(region);
     let full = with(region, &bays, before);
     (full != *region).then_some(full)
@@ -47,14 +46,6 @@ fn with(region: &Region, bays: &[&Part], before: Counts) -> Region {
     }
     let (some, others) = bays.split_at(bays.len() / 2);
     with(&with(region, some, before), others, before)
-}
-
-fn covers(part: &Part, p: GridPoint) -> bool {
-    let (low, high) = part.exterior().bounds();
-    (low.x..=high.x).contains(&p.x)
-        && (low.y..=high.y).contains(&p.y)
-        && part.exterior().contains(p)
-        && !part.holes().iter().any(|hole| hole.contains(p))
 }
 
 #[cfg(test)]

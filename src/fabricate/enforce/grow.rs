@@ -72,14 +72,6 @@ pub(super) fn complement(set: &Region, frame: (DVec2, DVec2)) -> Region {
     Region::fill(set.grid(), &paths, FillRule::Positive)
 }
 
-/// What is in `a` and not in `b`.
-pub(super) fn difference(a: &Region, b: &Region) -> Region {
-    let taken = b.contours().map(|contour| reversed(contour.points().to_vec()));
-    let paths: Vec<Vec<GridPoint>> =
-        a.contours().map(|contour| contour.points().to_vec()).chain(taken).collect();
-    Region::fill(a.grid(), &paths, FillRule::Positive)
-}
-
 /// Without parts that have no point of `own`, and holes that have none of `other`.
 fn tidied(region: Region, own: &[DVec2], other: &[DVec2]) -> Region {
     let grid = region.grid();

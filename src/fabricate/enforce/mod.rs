@@ -33,7 +33,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use self::core::{Core, Fineness, cores};
-use self::grow::{Bounds, complement, difference, grown};
+use self::grow::{Bounds, complement, grown};
 use self::keep::{Kept, Tip};
 use self::stroke::{Stroke, guards, lacking, merged};
 use super::Counts;
@@ -263,7 +263,7 @@ fn changed(before: &Region, now: Region, options: &EnforceOptions) -> Enforced {
     if now == *before {
         return unchanged(before);
     }
-    let [added, removed] = [difference(&now, before), difference(before, &now)];
+    let [added, removed] = [now.without(before), before.without(&now)];
     let width_mm = options.min_feature_mm.max(options.min_gap_mm);
     let mut changes = Vec::new();
     for (change, sign) in [(&added, 1.0), (&removed, -1.0)] {
