@@ -11,7 +11,7 @@ use super::preset::PresetArgs;
 use super::print::PrintArgs;
 use super::shell::{CompletionsArguments, ManArguments};
 use super::values;
-use crate::domain::{CurveSpec, RectSize, Twist};
+use crate::domain::{CurveSpec, RectSize, Roll, Twist};
 use crate::job::{KeptRange, SlicingChoice, StitchMethod};
 
 /// Ornament that can be made: new pattern from one SVG ornament, with exactly the components and holes you ask
@@ -185,10 +185,17 @@ pub(super) struct RectArguments {
     /// The ornament to learn from (SVG)
     pub(super) exemplar: PathBuf,
     /// Width and height, such as 120x80mm
-    #[arg(long, value_name = "WxH", value_parser = values::size, allow_hyphen_values = true)]
-    pub(super) size: RectSize,
+    #[arg(long, value_name = "WxH", value_parser = values::size, allow_hyphen_values = true, required_unless_present = "roll", conflicts_with = "roll")]
+    pub(super) size: Option<RectSize>,
+    /// Roll the rectangle to a cylinder by its inner diameter, as diameter=120mm, or to a cone, as diameter=120mm,top=80mm. Its sides are
+    /// joined, so that a shade is one piece; counts are those of what stands there, the way round being one of the holes
+    #[arg(long, value_name = "ROLL", value_parser = values::roll, requires = "height")]
+    pub(super) roll: Option<Roll>,
+    /// How high a rolled rectangle stands
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_negative_numbers = true, requires = "roll")]
+    pub(super) height: Option<f64>,
     /// Make opposite sides match, so that copies join; the page is the tile, without a margin
-    #[arg(long)]
+    #[arg(long, conflicts_with = "roll")]
     pub(super) tile: bool,
     #[command(flatten)]
     pub(super) pattern: PatternArguments,

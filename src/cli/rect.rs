@@ -5,35 +5,45 @@ use std::process::ExitCode;
 use super::args::RectArguments;
 use super::progress::Progress;
 use super::run::{BRIDGES_SHOWN, CliError, destinations, say_bridges, say_found, with_pattern};
-use crate::domain::{CurveSpec, RectSize};
-use crate::job::{BandBuilder, Output, RectBuilder, RectReport};
+use crate::domain::{CurveSpec, Roll};
+use crate::job::{BandBuilder, Output, RectBuilder, RectJob, RectReport};
 
 pub(super) fn run_rect(arguments: &RectArguments) -> Result<ExitCode, CliError> {
     let (outputs, report_target) = destinations(&arguments.pattern)?;
     let quiet = arguments.pattern.quiet;
-    let line = CurveSpec::Line { length_mm: arguments.size.width_mm() };
-    let mut band = with_pattern(BandBuilder::new(&arguments.exemplar, line), &arguments.pattern)?;
-    if let Some(seed) = arguments.pattern.seed {
-        band = band.seed(seed);
-    }
-    let job = RectBuilder::new(&arguments.exemplar, arguments.size)
-        .tile(arguments.tile)
-        .options(|_| band)
-        .build()?;
+    let job = rect_job(arguments)?;
     job.check_outputs(&outputs, report_target.as_ref())?;
     let progress = Progress::new(quiet, outputs.iter().map(Output::target).chain(&report_target));
     let rect = job.run(&mut |stage| progress.show(stage))?;
     let report = rect.write(&outputs, report_target.as_ref(), &mut |stage| progress.show(stage))?;
     drop(progress);
     if !quiet {
-        say_rect(&report, arguments.size);
+        say_rect(&report, arguments.roll);
     }
     Ok(ExitCode::SUCCESS)
 }
 
-fn say_rect(report: &RectReport, size: RectSize) {
+/// The job that the arguments ask for.
+pub(super) fn rect_job(arguments: &RectArguments) -> Result<RectJob, CliError> {
+    // The curve of a rectangle is its own matter.
+    let line = CurveSpec::Line { length_mm: 1.0 };
+    let mut band = with_pattern(BandBuilder::new(&arguments.exemplar, line), &arguments.pattern)?;
+    if let Some(seed) = arguments.pattern.seed {
+        band = band.seed(seed);
+    }
+    let rect = match (arguments.roll, arguments.height, arguments.size) {
+        (Some(roll), Some(height_mm), _) => RectBuilder::rolled(&arguments.exemplar, roll, height_mm),
+        (_, _, Some(size)) => RectBuilder::new(&arguments.exemplar, size),
+        _ => unreachable!("the parser asks for a size, or a roll with its height"),
+    };
+    Ok(rect.tile(arguments.tile).options(|_| band).build()?)
+}
+
+fn say_rect(report: &RectReport, roll: Option<Roll>) {
+    let [width_mm, height_mm] = report.size_mm.map(|mm| (mm * 100.0).round() / 100.0);
+    let rolled = roll.map_or_else(String::new, |roll| format!(", rolled to {roll}"));
     say!(
-        "{} component(s), {} hole(s) in {size}: {} pieces along the width, {} rows along the height, {} way(s) tried",
+        "{} component(s), {} hole(s) in {width_mm}x{height_mm}mm{rolled}: {} pieces along the width, {} rows along the height, {} way(s) tried",
         report.components,
         report.holes,
         report.along_u.pieces_in_result,

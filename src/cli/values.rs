@@ -1,6 +1,6 @@
 //! Values of options as they are typed.
 
-use crate::domain::{CurveSpec, RectSize, parse_length_mm};
+use crate::domain::{CurveSpec, RectSize, Roll, parse_length_mm};
 use crate::fabricate::Bed;
 use crate::job::{KeptRange, SheetSize, SlicingChoice, StitchMethod, Wanted, WantedError};
 use crate::verify::Between;
@@ -64,6 +64,11 @@ pub(super) fn bed(text: &str) -> Result<Bed, String> {
 /// A size: `120x80mm`.
 pub(super) fn size(text: &str) -> Result<RectSize, String> {
     text.parse::<RectSize>().map_err(|e| e.to_string())
+}
+
+/// What a rectangle is rolled to: `diameter=120mm,top=80mm`.
+pub(super) fn roll(text: &str) -> Result<Roll, String> {
+    text.parse::<Roll>().map_err(|e| e.to_string())
 }
 
 /// The size of a plate: `300x200mm`.

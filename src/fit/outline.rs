@@ -118,7 +118,7 @@ impl Outline {
         let half = height_mm / 2.0;
         let fits = height_mm / (high - low);
         self.squash = match sides {
-            Sides::Held => return,
+            Sides::Held | Sides::Joined => return,
             Sides::Free if low >= -half && high <= half => return,
             Sides::Free => fits.min(1.0),
             Sides::Filled => fits,

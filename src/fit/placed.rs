@@ -38,6 +38,15 @@ pub enum Sides {
     /// What lies on them stays there: pieces keep their heights, and only what is between the sides bends. Pieces
     /// are always warped, as rotation-invariant deformation moves what lies on the sides.
     Held,
+    /// The same, and the two sides are one place, as of a sheet that is rolled.
+    Joined,
+}
+
+impl Sides {
+    /// Whether what lies on the sides stays there.
+    pub fn are_held(self) -> bool {
+        matches!(self, Self::Held | Self::Joined)
+    }
 }
 
 /// A run of pieces that cannot be fitted.
@@ -142,7 +151,7 @@ impl<'a> Placed<'a> {
         let rises: Vec<f64> = table.iter().map(|j| j.rise_mm).collect();
         let portals: Vec<usize> =
             joins.iter().map(|&(from, _)| catalogue.pieces()[from].right_portals()).collect();
-        let held_mm = (options.sides == Sides::Held).then_some(options.height_mm / 2.0);
+        let held_mm = options.sides.are_held().then_some(options.height_mm / 2.0);
         let offsets = match held_mm {
             Some(_) => vec![0.0; pieces.len()],
             None => offsets(&rises, &portals, options.is_ring),

@@ -11,6 +11,7 @@ use super::choice::Choice;
 use super::cut::{Cut, read_exemplar, slice};
 use super::describe::describe;
 use super::error::JobError;
+use super::joined::Joined;
 use super::judged::Drawn;
 use super::making::{self, Border, Mended};
 use super::output::Output;
@@ -24,7 +25,7 @@ use super::ways::{Runs, ways, weighed, weighed_note};
 use crate::domain::{BandMap, CurveSpec, PlanarCurve, SpaceCurve, SpaceMap};
 use crate::exemplar::{Limits, read_path};
 use crate::fabricate::{self, Counts};
-use crate::fit::{FitOptions, Outline, Prepared, Sides, StitchMethod};
+use crate::fit::{FitOptions, Outline, Prepared, StitchMethod};
 use crate::planar::Region;
 use crate::topology::Topology;
 use crate::verify::Mismatch;
@@ -229,6 +230,16 @@ impl Band {
         })
     }
 
+    /// Lays a rectangle in space. The middle of its ink is the middle of the sheet, and where it is `rolled` its left side is its right one.
+    pub(super) fn lay(&mut self, space: &SpaceMap, rolled: bool) {
+        let (low, high) = self.part.region.bounds_mm().unwrap_or_default();
+        self.part.joined = rolled.then_some(Joined { cut_mm: 0.0, sides_mm: [low.x, high.x] });
+        let start = 0.5 * (low.x + high.x - space.curve().length_mm());
+        self.part.shift_mm = DVec2::new(start, 0.5 * (low.y + high.y));
+        self.space = Some(space.clone());
+        self.report.flat = self.flat_pattern();
+    }
+
     /// What its drawing is, of a band in space.
     fn flat_pattern(&self) -> Option<FlatPattern> {
         let space = self.space.as_ref()?;
@@ -355,7 +366,7 @@ fn make_part(
     let mut last = None;
     // What no chord error can help is warped after all.
     let methods: &[StitchMethod] = match job.options.stitch {
-        StitchMethod::Lri if cut.sides != Sides::Held => &[StitchMethod::Lri, StitchMethod::Warp],
+        StitchMethod::Lri if !cut.sides.are_held() => &[StitchMethod::Lri, StitchMethod::Warp],
         _ => &[StitchMethod::Warp],
     };
     let tries = methods.iter().flat_map(|&stitch| CHORD_TRIES.map(|share| (stitch, share)));
@@ -371,7 +382,7 @@ fn make_part(
         };
         let outline =
             clock.time(Stage::Fit, || Outline::prepared(&cut.catalogue, &plan.sequence, &fit, prepared))?;
-        match clock.time(Stage::Map, || Part::new(&outline, map, planned, chord_mm * MAP_SHARE)) {
+        match clock.time(Stage::Map, || Part::new(&outline, map, cut.sides, planned, chord_mm * MAP_SHARE)) {
             Ok(part) => return Ok((part, outline)),
             Err(PartError::Job(error)) => return Err(error),
             Err(PartError::Untrue(fault)) => last = Some(fault),

@@ -54,7 +54,10 @@ impl Cut {
     }
 
     fn weighed(&self, weights: &CostWeights, own_ends_only: bool) -> Catalogue {
-        let catalogue = catalogue(&self.region, &self.slicing, weights, self.mirror);
+        let catalogue = match self.sides {
+            Sides::Joined => Catalogue::rolled(&self.region, &self.slicing.cuts, weights),
+            _ => catalogue(&self.region, &self.slicing, weights, self.mirror),
+        };
         if own_ends_only { catalogue.with_own_ends_only() } else { catalogue }
     }
 }

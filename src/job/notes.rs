@@ -86,7 +86,7 @@ fn specks(job: &BandJob, cut: &Cut) -> Option<String> {
 
 fn warped(job: &BandJob, cut: &Cut, plan: &Plan, outline: &Outline) -> Vec<String> {
     let mut notes = Vec::new();
-    if outline.method != job.options.stitch && cut.sides != Sides::Held {
+    if outline.method != job.options.stitch && !cut.sides.are_held() {
         notes.push(
             "the whole band was stitched by --stitch warp, as rotation-invariant deformation made contours meet between its pieces"
                 .to_owned(),

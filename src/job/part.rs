@@ -7,7 +7,7 @@ use super::joined::Joined;
 use super::unrolled::{best_cut, unrolled};
 use crate::domain::BandMap;
 use crate::fabricate::{Counts, snapped_to_f32};
-use crate::fit::Outline;
+use crate::fit::{Outline, Sides};
 use crate::planar::{Contour, Grid, GridPoint, Region, RegionError};
 use crate::topology::Topology;
 use crate::verify;
@@ -48,6 +48,7 @@ impl Part {
     pub(super) fn new(
         outline: &Outline,
         map: &BandMap,
+        sides: Sides,
         planned: Topology,
         chord_mm: f64,
     ) -> Result<Self, PartError> {
@@ -65,7 +66,10 @@ impl Part {
             .map_err(|e| PartError::Job(JobError::Fabricate(e.into())))?;
         let region = region_of(&mapped, exact, shift)?;
         let region = snapped_to_f32(&region).map_err(|e| PartError::Job(JobError::Fabricate(e)))?;
-        let counts = Counts::of(&region);
+        let counts = match sides {
+            Sides::Joined => rolled_across(&region)?,
+            _ => Counts::of(&region),
+        };
         check_counts(counts, planned)?;
         let [low, high] = map.v_range_mm();
         let across = (0..=SEAM_CHORDS).map(|i| low + (high - low) * f64::from(i) / f64::from(SEAM_CHORDS));
@@ -124,6 +128,15 @@ fn region_of(paths: &[Vec<DVec2>], grid: Grid, shift: DVec2) -> Result<Region, P
         }
         RegionError::Grid(e) => PartError::Job(JobError::Fabricate(e.into())),
     })
+}
+
+/// What a region has whose lower and upper sides are one place.
+fn rolled_across(region: &Region) -> Result<Counts, PartError> {
+    let upright = region.turned_right();
+    let (low, high) = upright.bounds_mm().unwrap_or_default();
+    let rolled = verify::rolled(&upright, [low.x, high.x])
+        .map_err(|_| PartError::Untrue(OutlineFault::Contact { position_mm: DVec2::splat(MARGIN_MM) }))?;
+    Ok(Counts { components: rolled.components, holes: rolled.holes })
 }
 
 fn check_counts(counts: Counts, planned: Topology) -> Result<(), PartError> {

@@ -91,7 +91,7 @@ fn describe(job: &RectJob, found: &Found) -> RectReport {
     let made = &second.band.report;
     // Notes on the exemplar itself come with the second pass too.
     let own = first_report.made.notes.iter().filter(|note| !exemplar.notes().contains(note));
-    let notes = own.map(|note| of_first_pass(note)).collect();
+    let notes = own.map(|note| of_first_pass(note)).chain(job.note.clone()).collect();
     RectReport {
         schema_version: 1,
         generator: made.generator,
@@ -109,6 +109,7 @@ fn describe(job: &RectJob, found: &Found) -> RectReport {
         along_u: DirectionReport::new(first_report, first_report.width_mm, first.cuts_mm.clone()),
         along_v: DirectionReport::new(made, job.size.width_mm(), cuts_mm.clone()),
         tiling: second.tiling,
+        flat: made.flat.clone(),
         bridges: made.bridges.clone(),
         attempts: found.attempts.clone(),
         chosen_attempt: found.chosen,

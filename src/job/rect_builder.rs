@@ -6,22 +6,45 @@ use super::builder::{BandBuilder, BandJob};
 use super::error::JobError;
 use super::output::{Output, Target};
 use super::rect::Rect;
+use super::space::{self, refuse_flat_only};
 use super::stage::Stage;
-use crate::domain::{CurveSpec, RectSize};
+use crate::domain::{CurveSpec, RectSize, Roll, SpaceMap};
 
 /// Collects the options of a rectangle (Zhou 2014 §6.2).
 #[derive(Debug, Clone)]
 pub struct RectBuilder {
     band: BandBuilder,
-    size: RectSize,
+    size: Sides,
     tile: bool,
+}
+
+/// How large a rectangle is.
+#[derive(Debug, Clone, Copy)]
+enum Sides {
+    Flat(RectSize),
+    /// As wide as what it is rolled to is round.
+    Rolled {
+        roll: Roll,
+        height_mm: f64,
+    },
 }
 
 impl RectBuilder {
     /// A rectangle of the exemplar in an SVG file.
     pub fn new(exemplar: impl AsRef<Path>, size: RectSize) -> Self {
         let along = CurveSpec::Line { length_mm: size.width_mm() };
-        Self { band: BandBuilder::new(exemplar, along), size, tile: false }
+        Self { band: BandBuilder::new(exemplar, along), size: Sides::Flat(size), tile: false }
+    }
+
+    /// A rectangle that is rolled to a cylinder or a cone `height_mm` high, its sides joined. It has the components and holes
+    /// that are asked for as it stands; the way round is one of the holes.
+    pub fn rolled(exemplar: impl AsRef<Path>, roll: Roll, height_mm: f64) -> Self {
+        let along = CurveSpec::Line { length_mm: height_mm };
+        Self {
+            band: BandBuilder::new(exemplar, along),
+            size: Sides::Rolled { roll, height_mm },
+            tile: false,
+        }
     }
 
     /// Sets options that a rectangle shares with a band. Its constraints hold for the finished rectangle, its
@@ -37,8 +60,9 @@ impl RectBuilder {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn options(mut self, set: impl FnOnce(BandBuilder) -> BandBuilder) -> Self {
+        let along = self.band.along.clone();
         self.band = set(self.band);
-        self.band.along = CurveSpec::Line { length_mm: self.size.width_mm() };
+        self.band.along = along;
         self
     }
 
@@ -55,11 +79,25 @@ impl RectBuilder {
     /// As [`BandBuilder::build`]; and [`JobError::Option`] for `--width` above the height of the rectangle, for
     /// bridges in a tile, and for a closed pattern, which only rings have.
     pub fn build(self) -> Result<RectJob, JobError> {
-        let band = self.band.build()?;
-        if let Some(width) = band.options.width_mm.filter(|&width| width > self.size.height_mm()) {
+        let mut band = self.band.build()?;
+        let (size, space) = match self.size {
+            Sides::Flat(size) => (size, None),
+            Sides::Rolled { roll, height_mm } => {
+                let (size, map) = rolled(&band, roll, height_mm)?;
+                (size, Some(map))
+            }
+        };
+        let mut note = None;
+        if let Some(map) = &space {
+            refuse_flat_only(&band.options.print)?;
+            let asked = band.tolerances;
+            band.tolerances = space::flat_tolerances(&asked, map)?;
+            note = space::note(&asked, &band.tolerances);
+        }
+        if let Some(width) = band.options.width_mm.filter(|&width| width > size.height_mm()) {
             return Err(JobError::Option {
                 option: "--width",
-                found: format!("rows {width:.2} mm high do not fit a rectangle of {}", self.size),
+                found: format!("rows {width:.2} mm high do not fit a rectangle of {size}"),
                 wanted: "make the rows lower, or the rectangle higher".to_owned(),
             });
         }
@@ -86,8 +124,24 @@ impl RectBuilder {
                     .to_owned(),
             });
         }
-        Ok(RectJob { band, size: self.size, tile: self.tile })
+        Ok(RectJob { band, size, tile: self.tile, space, note })
     }
+}
+
+/// The rectangle that becomes a roll, and how it is rolled.
+fn rolled(band: &BandJob, roll: Roll, height_mm: f64) -> Result<(RectSize, SpaceMap), JobError> {
+    let refuse = |option: &'static str, found: &str, wanted: &str| {
+        Err(JobError::Option { option, found: found.to_owned(), wanted: wanted.to_owned() })
+    };
+    let options = &band.options;
+    if options.bridge_mm.is_some() || options.enforce {
+        let option = if options.enforce { "--enforce" } else { "--bridge" };
+        let wanted = "ask for what the ornament gives by itself, or take a larger --width";
+        return refuse(option, "the sides of what is rolled would not meet after it", wanted);
+    }
+    let (curve, slant_mm) = roll.curve(height_mm, options.thickness_mm)?;
+    let size = RectSize::new(curve.length_mm(), slant_mm)?;
+    Ok((size, space::standing(curve, slant_mm, options.thickness_mm, &band.tolerances)?))
 }
 
 /// A rectangle whose options are in order.
@@ -96,9 +150,18 @@ pub struct RectJob {
     pub(super) band: BandJob,
     pub(super) size: RectSize,
     pub(super) tile: bool,
+    /// Where it lies, if it does not lie in the plane.
+    pub(super) space: Option<SpaceMap>,
+    /// What the user may want to know of that.
+    pub(super) note: Option<String>,
 }
 
 impl RectJob {
+    /// Whether its left side is its right side.
+    pub(super) fn is_rolled(&self) -> bool {
+        self.space.as_ref().is_some_and(|map| map.curve().is_closed())
+    }
+
     /// Refuses outputs that would overwrite each other or the exemplar, or that cannot be files.
     ///
     /// # Errors

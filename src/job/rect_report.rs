@@ -10,7 +10,7 @@ use super::builder::BandJob;
 use super::error::JobError;
 use super::json;
 use super::rect_rows::Way;
-use super::report::{BandReport, DroppedCutReport, InputReport, MadeReport, SeamReport, StitchReport};
+use super::report::{BandReport, DroppedCutReport, FlatPattern, InputReport, MadeReport, SeamReport, StitchReport};
 use crate::topology::Wanted;
 use crate::verify::Tiling;
 
@@ -178,6 +178,8 @@ pub struct RectReport {
     pub along_v: DirectionReport,
     /// The tiling that copies make, counted on the drawing; null when no tile was asked for.
     pub tiling: Option<Tiling>,
+    /// What the drawing is of a rectangle that does not lie flat; null for one that does.
+    pub flat: Option<FlatPattern>,
     /// The bridges, when the ornament alone could not give what was asked for; then the counts are with them.
     pub bridges: Option<BridgesReport>,
     /// The ways that were tried, in order.

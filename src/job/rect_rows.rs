@@ -18,7 +18,7 @@ use super::plan::Plan;
 use super::planning::{plan_run, plan_way};
 use super::rect_builder::RectJob;
 use super::rect_strip::Strip;
-use super::rect_tile::{clear_sides, join_own_copies, opened};
+use super::rect_tile::{clear_sides, join_own_copies, join_sides, opened};
 use super::stage::{Clock, Stage};
 use crate::domain::{BandMap, CurveSpec};
 use crate::exemplar::Exemplar;
@@ -94,7 +94,7 @@ impl Way {
         map: &BandMap,
         clock: &mut Clock<'_>,
     ) -> Result<Self, JobError> {
-        let tile = job.tile;
+        let (tile, rolled) = (job.tile, job.is_rolled());
         let mut options = job.band.options.clone();
         options.along = CurveSpec::Line { length_mm: job.size.height_mm() };
         options.goal = wish.goal;
@@ -119,6 +119,8 @@ impl Way {
             let (region, _) = opened(&standing, &cut.slicing.cuts, wish.split, true, &[])?;
             cut = slice(&region)?;
             join_own_copies(&mut cut, true);
+        } else if rolled {
+            join_sides(&mut cut);
         } else {
             cut.sides = Sides::Filled;
         }
@@ -147,7 +149,7 @@ impl Way {
         &self,
         strip: &Strip,
         bridges: Option<(f64, Goal)>,
-        tile: bool,
+        rect: &RectJob,
         map: &BandMap,
         clock: &mut Clock<'_>,
     ) -> Result<Made, JobError> {
@@ -163,12 +165,15 @@ impl Way {
             )));
         }
         band.part = turned_back(&band.part);
-        if tile {
+        if rect.tile {
             // Copies are set page by page.
             let [low, high] = map.v_range_mm();
             band.part = band.part.without_margin(DVec2::new(high - low, map.curve().length_mm()))?;
         }
         band.report.made.page_mm = band.part.page_mm.to_array();
+        if let Some(space) = &rect.space {
+            band.lay(space, rect.is_rolled());
+        }
         if let Some((width_mm, _)) = bridges {
             clock.time(Stage::Bridge, || band.lay_bridges(width_mm, None))?;
         }
@@ -177,7 +182,7 @@ impl Way {
         band.report.width_mm = strip.band.report.width_mm;
         // Ink that the machine cannot make may be thicker another way.
         let found = band.pass(clock)?;
-        let tiling = match tile {
+        let tiling = match rect.tile {
             // One that does not join is one way less, and no fault of a file.
             true => {
                 let tiling = clock.time(Stage::Verify, || verify::tiling(&found.region));

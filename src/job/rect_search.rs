@@ -155,12 +155,21 @@ fn relaxed_goals(job: &RectJob) -> Vec<Goal> {
 }
 
 /// The topologies that strips are asked for. The rows of a strip that hangs together do so too, mostly.
-fn first_goals(goal: Goal) -> Vec<Goal> {
-    let one = Goal { components: Some(Wanted::exactly(1)), ..Goal::default() };
+///
+/// What is `rolled` must go all the way round: a strip that has a place without ink would leave the sheet open there.
+fn first_goals(goal: Goal, rolled: bool) -> Vec<Goal> {
+    let free = Goal { closed_pattern: rolled, ..Goal::default() };
+    let one = Goal { components: Some(Wanted::exactly(1)), ..free };
     match goal.holes {
-        Some(_) => vec![one, Goal { holes: Some(Wanted::exactly(0)), ..one }, Goal::default()],
-        None => vec![one, Goal::default()],
+        // The way round is a hole of a strip that closes.
+        Some(_) => vec![one, Goal { holes: Some(Wanted::exactly(u32::from(rolled))), ..one }, free],
+        None => vec![one, free],
     }
+}
+
+/// Whether any strip will do, or any that closes.
+fn is_any(goal: Goal) -> bool {
+    Goal { closed_pattern: false, ..goal }.is_free()
 }
 
 impl Search<'_, '_> {
@@ -194,7 +203,7 @@ impl Search<'_, '_> {
         };
         let mut wishes = Vec::new();
         for seed in seeds {
-            for goal in first_goals(goal) {
+            for goal in first_goals(goal, self.job.is_rolled()) {
                 // What the exemplar has as it is goes before what a mirror makes of it.
                 wishes.extend([false, true].map(|fold| Wish { goal, seed, worst_misfit, scraps, fold }));
             }
@@ -207,13 +216,13 @@ impl Search<'_, '_> {
             }
             // What no strip can be at all is nobody's wish; the rest is only tried, and costs nothing but that.
             let is_told = self.error.as_ref().is_some_and(|((is_own, ..), _)| *is_own);
-            let explained = wish.goal.is_free() && !is_told;
+            let explained = is_any(wish.goal) && !is_told;
             let strip = match strips.get(wish, explained, self.clock) {
                 Ok(Some(strip)) => strip,
                 Ok(None) => continue,
                 Err(error) => {
                     self.attempts.push(Attempt::first(&strips.job(wish), error.to_string()));
-                    self.note((wish.goal.is_free(), false, matches!(error, JobError::Refused(_))), error);
+                    self.note((is_any(wish.goal), false, matches!(error, JobError::Refused(_))), error);
                     continue;
                 }
             };
@@ -243,7 +252,7 @@ impl Search<'_, '_> {
         self.attempts.push(Attempt::second(&strip.band, wish.worst_misfit, way.as_ref()));
         let made = way.and_then(|way| {
             let bridges = self.bridge_mm.map(|width_mm| (width_mm, self.job.band.options.goal));
-            let made = way.made(strip, bridges, self.job.tile, &self.map, self.clock);
+            let made = way.made(strip, bridges, self.job, &self.map, self.clock);
             made.map(|made| (way, made))
         });
         made.map_err(|error| {
@@ -279,7 +288,7 @@ impl Search<'_, '_> {
     fn refusal(self) -> JobError {
         let ways = self.attempts.len();
         let options = &self.job.band.options;
-        let can_bridge = options.bridge_mm.is_none() && !self.job.tile;
+        let can_bridge = options.bridge_mm.is_none() && !self.job.tile && !self.job.is_rolled();
         let remedy = match (self.unbridged, options.goal.components, options.goal.holes) {
             (Some(why), ..) => format!("; and with bridges, {why}"),
             (None, Some(_), _) if can_bridge => ", or --bridge 1mm to join what stays apart".to_owned(),

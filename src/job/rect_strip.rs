@@ -74,6 +74,8 @@ pub(super) struct Strips {
     job: BandJob,
     pub(super) exemplar: Exemplar,
     tile: bool,
+    /// Whether strips go all the way round, and close.
+    rolled: bool,
     map_width_mm: f64,
     /// What was wished for, and what came of it.
     known: Vec<(Wish, Option<Strip>)>,
@@ -99,6 +101,7 @@ impl Strips {
             job: band,
             exemplar,
             tile: job.tile,
+            rolled: job.is_rolled(),
             map_width_mm: job.size.width_mm(),
             known: Vec::new(),
             refused: Vec::new(),
@@ -167,7 +170,10 @@ impl Strips {
             cut = slice(&job, &region)?;
             join_own_copies(&mut cut, false);
         }
-        let map = flat_map(self.map_width_mm, cut.height_mm)?;
+        let map = match self.rolled {
+            true => rolled_map(self.map_width_mm, cut.height_mm)?,
+            false => flat_map(self.map_width_mm, cut.height_mm)?,
+        };
         let planned = match explained {
             true => plan_run(&job, &mut cut, &map, clock),
             false => plan_strip(&job, &mut cut, &map, clock).and_then(|found| {
@@ -201,6 +207,11 @@ impl Strips {
 /// The map of a straight band.
 pub(super) fn flat_map(length_mm: f64, height_mm: f64) -> Result<BandMap, JobError> {
     Ok(BandMap::new(PlanarCurve::line(length_mm)?, -height_mm / 2.0, height_mm / 2.0)?)
+}
+
+/// The map of a band that is closed and laid flat.
+fn rolled_map(length_mm: f64, height_mm: f64) -> Result<BandMap, JobError> {
+    Ok(BandMap::new(PlanarCurve::rolled(length_mm)?, -height_mm / 2.0, height_mm / 2.0)?)
 }
 
 /// Where a region was cut, in millimetres.

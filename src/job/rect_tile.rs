@@ -130,17 +130,27 @@ pub(super) fn clear_sides(cut: &mut Cut) {
         .retain(|c| c.crossings.iter().all(|c| c.y_mm - low.y > touch && high.y - c.y_mm > touch));
 }
 
-/// Makes runs of `cut` begin and end as the exemplar does; with `holds`, pieces also keep their heights, and joins
-/// are weighed by where they are and not by where they could be moved to.
+/// Makes runs of `cut` begin and end as the exemplar does; with `holds`, pieces also keep their heights.
 pub(super) fn join_own_copies(cut: &mut Cut, holds: bool) {
     if holds {
-        clear_sides(cut);
-        let (low, high) = cut.region().bounds_mm().unwrap_or_default();
-        let size = high - low;
-        let CostWeights { alpha, .. } = cut.weights;
-        // With the mean square after the best shift, this makes the mean square without it.
-        cut.weights.rise = alpha * (size.y / (size.max_element() * UNIT)).powi(2);
-        cut.sides = Sides::Held;
+        hold_sides(cut, Sides::Held);
     }
     cut.weigh(true);
+}
+
+/// Makes the rows of `cut` keep their heights, on a sheet that is rolled, where the two sides of the strip are one place.
+pub(super) fn join_sides(cut: &mut Cut) {
+    hold_sides(cut, Sides::Joined);
+    cut.weigh(false);
+}
+
+/// Lets pieces keep their heights, and joins be weighed by where they are and not by where they could be moved to.
+fn hold_sides(cut: &mut Cut, sides: Sides) {
+    clear_sides(cut);
+    let (low, high) = cut.region().bounds_mm().unwrap_or_default();
+    let size = high - low;
+    let CostWeights { alpha, .. } = cut.weights;
+    // With the mean square after the best shift, this makes the mean square without it.
+    cut.weights.rise = alpha * (size.y / (size.max_element() * UNIT)).powi(2);
+    cut.sides = sides;
 }

@@ -85,7 +85,7 @@ pub(super) fn read_space_curve(options: &BandBuilder) -> Result<Option<SpaceCurv
 }
 
 /// Refuses what is made for parts that lie flat only.
-fn refuse_flat_only(print: &PrintOptions) -> Result<(), JobError> {
+pub(super) fn refuse_flat_only(print: &PrintOptions) -> Result<(), JobError> {
     let given = [
         ("--chamfer", print.chamfer_mm.is_some()),
         ("--taper", print.taper_deg.is_some()),
@@ -112,12 +112,36 @@ pub(super) fn flat(curve: &SpaceCurve) -> Result<PlanarCurve, JobError> {
 
 /// The map of a band of `height_mm` along the curve. A ring or a helix is lifted so that its lowest corner is at z = 0.
 pub(super) fn space_map(job: &BandJob, curve: SpaceCurve, height_mm: f64) -> Result<SpaceMap, JobError> {
-    let (half, half_thickness) = (0.5 * height_mm, 0.5 * job.options.thickness_mm);
-    let stands = matches!(job.options.along, CurveSpec::Ring { .. } | CurveSpec::Helix { .. });
-    let map =
-        SpaceMap::new(curve, [-half, half], [-half_thickness, half_thickness], job.tolerances.min_gap_mm())?;
+    let thickness_mm = job.options.thickness_mm;
+    match job.options.along {
+        CurveSpec::Ring { .. } | CurveSpec::Helix { .. } => {
+            standing(curve, height_mm, thickness_mm, &job.tolerances)
+        }
+        _ => laid(curve, height_mm, thickness_mm, &job.tolerances),
+    }
+}
+
+/// The map of a sheet about the middle of its height and thickness.
+fn laid(
+    curve: SpaceCurve,
+    height_mm: f64,
+    thickness_mm: f64,
+    tolerances: &Tolerances,
+) -> Result<SpaceMap, JobError> {
+    let [v, w] = [height_mm, thickness_mm].map(|mm| [-0.5 * mm, 0.5 * mm]);
+    Ok(SpaceMap::new(curve, v, w, tolerances.min_gap_mm())?)
+}
+
+/// The same, lifted so that its lowest corner is at z = 0.
+pub(super) fn standing(
+    curve: SpaceCurve,
+    height_mm: f64,
+    thickness_mm: f64,
+    tolerances: &Tolerances,
+) -> Result<SpaceMap, JobError> {
+    let map = laid(curve, height_mm, thickness_mm, tolerances)?;
     let low_mm = map.low_mm();
-    Ok(if stands { map.lifted(-low_mm) } else { map })
+    Ok(map.lifted(-low_mm))
 }
 
 /// The tolerances of the flat pattern, so that those that were asked for hold in space, where lengths are longer on the outer side of a

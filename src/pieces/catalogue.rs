@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use thiserror::Error;
 
-use super::cut_up::cut_up;
+use super::cut_up::{Rim, cut_up};
 use super::mirror::mirrored;
 use super::piece::{Endpoint, Piece};
 use super::seam::{Side, misfit, weakness};
@@ -133,12 +133,17 @@ const REFERENCE_MM: f64 = 60.0;
 impl Catalogue {
     /// Cuts `region` at `cuts` and weighs every join.
     pub fn new(region: &Region, cuts: &[Cut], weights: &CostWeights) -> Self {
-        Self::of(cut_up(region, cuts), false, region, weights)
+        Self::of(cut_up(region, cuts, Rim::Apart), false, region, weights)
     }
 
     /// As [`Self::new`], with every piece a second time, mirrored left for right.
     pub fn with_mirrored(region: &Region, cuts: &[Cut], weights: &CostWeights) -> Self {
-        Self::of(cut_up(region, cuts), true, region, weights)
+        Self::of(cut_up(region, cuts, Rim::Apart), true, region, weights)
+    }
+
+    /// As [`Self::with_mirrored`], of a sheet whose lower and upper side are one place.
+    pub fn rolled(region: &Region, cuts: &[Cut], weights: &CostWeights) -> Self {
+        Self::of(cut_up(region, cuts, Rim::Joined), true, region, weights)
     }
 
     fn of(mut pieces: Vec<Piece>, is_mirrored: bool, region: &Region, weights: &CostWeights) -> Self {

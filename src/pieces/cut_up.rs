@@ -4,12 +4,15 @@
 //! for the next exactly where its ends lie on different sides of a cut. The components of a piece are the
 //! closed walks along chains and portals; a contour that reaches no cut is an island if it runs
 //! counter-clockwise and a hole if not. Nothing here is decided by a rounded number.
+//!
+//! Where the lower and the upper side are one place ([`Rim::Joined`]), a piece is a part of a cylinder: ink that lies along both
+//! sides is glued there, interval by interval, which unites components and takes one off χ for each.
 
 use glam::DVec2;
 use rustc_hash::FxHashMap;
 
 use super::piece::{Chain, End, Endpoint, Piece};
-use crate::planar::{Contour, Grid, Region};
+use crate::planar::{Contour, Grid, GridPoint, Region, Sets};
 use crate::reeb::Cut;
 use crate::topology::Descriptor;
 
@@ -17,12 +20,22 @@ use crate::topology::Descriptor;
 /// copies that are joined end to end nearly touch; larger, and the gap between them shows.
 const END_BLANK: f64 = 0.005;
 
+/// What the lower and the upper side of an exemplar are to each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Rim {
+    /// Two borders.
+    Apart,
+    /// One place, as of a sheet that is rolled: the same ink lies along both.
+    Joined,
+}
+
 /// The pieces of `region` between `cuts`, left to right.
-pub(super) fn cut_up(region: &Region, cuts: &[Cut]) -> Vec<Piece> {
+pub(super) fn cut_up(region: &Region, cuts: &[Cut], rim: Rim) -> Vec<Piece> {
     let Some((low, high)) = region.bounds_mm() else {
         return Vec::new();
     };
     let grid = region.grid();
+    let rims = (rim == Rim::Joined).then(|| [grid.steps(low.y), grid.steps(high.y)]);
     let middle_mm = (low.y + high.y) / 2.0;
     let mut edges: Vec<f64> = cuts.iter().map(|c| grid.mm(c.x)).collect();
     // Blank ends keep pieces apart that are joined where the exemplar begins and ends.
@@ -50,14 +63,14 @@ pub(super) fn cut_up(region: &Region, cuts: &[Cut]) -> Vec<Piece> {
             ranks.insert((crossing.contour, crossing.edge, cut), rank);
         }
     }
-    let walk = Walk { grid, cuts, ranks, origin: DVec2::new(0.0, middle_mm), left_mm: &edges };
-    let mut loops = vec![Loops::default(); pieces.len()];
+    let walk = Walk { grid, cuts, ranks, rims, origin: DVec2::new(0.0, middle_mm), left_mm: &edges };
+    let mut loops = vec![Inside::default(); pieces.len()];
     for (number, contour) in region.contours().enumerate() {
         walk.contour(number, contour, &mut pieces, &mut loops);
     }
-    for (piece, loops) in pieces.iter_mut().zip(loops) {
+    for (piece, inside) in pieces.iter_mut().zip(loops) {
         piece.chains.sort_by_key(|chain| chain.start.order());
-        piece.descriptor = descriptor(piece, loops);
+        piece.descriptor = descriptor(piece, &inside);
     }
     pieces
 }
@@ -67,13 +80,15 @@ struct Walk<'a> {
     cuts: &'a [Cut],
     /// Contour, edge and cut to the crossing's number from the top.
     ranks: FxHashMap<(usize, usize, usize), usize>,
+    /// The lower and the upper side, if they are joined.
+    rims: Option<[i64; 2]>,
     origin: DVec2,
     /// Where each piece begins.
     left_mm: &'a [f64],
 }
 
 impl Walk<'_> {
-    fn contour(&self, number: usize, contour: &Contour, pieces: &mut [Piece], loops: &mut [Loops]) {
+    fn contour(&self, number: usize, contour: &Contour, pieces: &mut [Piece], inside: &mut [Inside]) {
         let points = contour.points();
         let piece_of = |x: i64| self.cuts.partition_point(|c| c.x < x);
         let homes: Vec<usize> = points.iter().map(|p| piece_of(p.x)).collect();
@@ -83,7 +98,8 @@ impl Walk<'_> {
             let local = points.iter().map(|&p| self.local(self.grid.to_mm(p), home)).collect();
             pieces[home].loops.push(local);
             // Exact: the orientation is that of the contour on its grid.
-            loops[home].count(contour.is_counter_clockwise());
+            let island = inside[home].count(contour.is_counter_clockwise());
+            contour.edges().for_each(|edge| self.along_rims(edge, Owner::Island(island), &mut inside[home]));
             return;
         };
         // Start after an edge that crosses a cut, so that every chain is met whole.
@@ -95,6 +111,9 @@ impl Walk<'_> {
                 open.push(self.local(self.grid.to_mm(points[i]), homes[i]));
             }
             let mut home = homes[i];
+            if let Some((start, _)) = chain.as_ref().filter(|_| home == homes[j]) {
+                self.along_rims((points[i], points[j]), Owner::Chain(*start), &mut inside[home]);
+            }
             while home != homes[j] {
                 let rightwards = home < homes[j];
                 let cut = if rightwards { home } else { home - 1 };
@@ -116,56 +135,99 @@ impl Walk<'_> {
         }
     }
 
+    /// Notes an edge that lies along a side that is joined to the other. None crosses a cut there.
+    fn along_rims(&self, (a, b): (GridPoint, GridPoint), owner: Owner, inside: &mut Inside) {
+        let Some(side) = self.rims.filter(|_| a.y == b.y).and_then(|ys| ys.iter().position(|&y| y == a.y))
+        else {
+            return;
+        };
+        inside.rims[side].push(Stretch { from: a.x.min(b.x), to: a.x.max(b.x), owner });
+    }
+
     fn local(&self, p: DVec2, piece: usize) -> DVec2 {
         p - self.origin - DVec2::new(self.left_mm[piece], 0.0)
     }
 }
 
-/// Contours inside a piece.
-#[derive(Debug, Clone, Copy, Default)]
-struct Loops {
+/// What is inside a piece beside its chains.
+#[derive(Debug, Clone, Default)]
+struct Inside {
     islands: u32,
     holes: u32,
+    /// Ink along the lower and the upper side, if they are joined.
+    rims: [Vec<Stretch>; 2],
 }
 
-impl Loops {
-    fn count(&mut self, is_island: bool) {
-        if is_island {
-            self.islands += 1;
-        } else {
-            self.holes += 1;
+/// A stretch of ink along a side.
+#[derive(Debug, Clone, Copy)]
+struct Stretch {
+    from: i64,
+    to: i64,
+    owner: Owner,
+}
+
+/// What a stretch of ink along a side is a part of.
+#[derive(Debug, Clone, Copy)]
+enum Owner {
+    /// The chain that starts there.
+    Chain(End),
+    /// An island, by its number in the piece.
+    Island(u32),
+}
+
+impl Inside {
+    /// Counts a contour; the number of an island is the one it has, and of a hole has no meaning.
+    fn count(&mut self, is_island: bool) -> u32 {
+        match is_island {
+            true => self.islands += 1,
+            false => self.holes += 1,
         }
+        self.islands.saturating_sub(1)
+    }
+
+    /// The owners of ink that is glued, interval by interval. Where the sides differ there is nothing to pair, and the part that
+    /// comes of it does not have the counts of its plan.
+    fn glued(&self) -> Vec<(Owner, Owner)> {
+        let intervals = |side: &[Stretch]| {
+            let mut sorted = side.to_vec();
+            sorted.sort_unstable_by_key(|stretch| stretch.from);
+            sorted.chunk_by(|a, b| a.to == b.from).map(|chunk| chunk[0].owner).collect::<Vec<_>>()
+        };
+        let [lower, upper] = self.rims.each_ref().map(|side| intervals(side));
+        lower.into_iter().zip(upper).collect()
     }
 }
 
-/// The descriptor of a piece from its chains and loops.
-fn descriptor(piece: &Piece, Loops { islands, holes }: Loops) -> Descriptor {
+/// The descriptor of a piece from its chains and what is inside.
+fn descriptor(piece: &Piece, inside: &Inside) -> Descriptor {
     let left = piece.left.len();
     let total = left + piece.right.len();
     let slot = |end: End| match end {
         End::Left(k) => k,
         End::Right(k) => left + k,
     };
-    // Endpoints joined along chains and across portals make the closed walks.
-    let mut label: Vec<usize> = (0..total).collect();
-    let find = |label: &[usize], mut a: usize| {
-        while label[a] != a {
-            a = label[a];
-        }
-        a
-    };
+    // Endpoints joined along chains and across portals make the closed walks; islands come after them.
+    let islands = inside.islands as usize;
+    let mut walks = Sets::new(total + islands);
     let chains = piece.chains.iter().map(|c| (slot(c.start), slot(c.end)));
     let portals = (0..total).step_by(2).map(|top| (top, top + 1));
-    for (a, b) in chains.chain(portals) {
-        let (a, b) = (find(&label, a), find(&label, b));
-        label[a.max(b)] = a.min(b);
-    }
-    let of_portals = |from: usize, to: usize| -> Vec<u32> {
-        (from..to).step_by(2).map(|top| find(&label, top) as u32).collect()
+    chains.chain(portals).for_each(|(a, b)| walks.join(a, b));
+    let roots = |walks: &mut Sets| (0..total + islands).filter(|&i| walks.find(i) == i).count() as i64;
+    let euler = roots(&mut walks) - i64::from(inside.holes);
+    let glued = inside.glued();
+    let number = |owner: Owner| match owner {
+        Owner::Chain(start) => slot(start),
+        Owner::Island(island) => total + island as usize,
     };
-    let open = (0..total).filter(|&a| label[a] == a).count() as i64;
-    let euler = open + i64::from(islands) - i64::from(holes);
-    Descriptor::new(&of_portals(0, left), &of_portals(left, total), islands, euler)
+    glued.iter().for_each(|&(lower, upper)| walks.join(number(lower), number(upper)));
+    let of_portals: Vec<u32> = (0..total).step_by(2).map(|top| walks.find(top) as u32).collect();
+    let all = roots(&mut walks);
+    let mut open = of_portals.clone();
+    open.sort_unstable();
+    open.dedup();
+    let closed = (all - open.len() as i64) as u32;
+    let (left_labels, right_labels) = of_portals.split_at(left / 2);
+    Descriptor::new(left_labels, right_labels, closed, euler - glued.len() as i64)
 }
 
 #[cfg(test)]
@@ -182,7 +244,7 @@ mod tests {
     fn pieces(region: &Region, rule: SlicingRule) -> Vec<Piece> {
         let reeb = ReebGraph::new(region);
         let slicing = Slicing::new(region, &reeb, rule, &Tolerances::default()).unwrap();
-        cut_up(region, &slicing.cuts)
+        cut_up(region, &slicing.cuts, Rim::Apart)
     }
 
     #[test]

@@ -10,10 +10,12 @@ mod contact;
 mod curve;
 mod error;
 mod map;
+mod roll;
 mod spline;
 mod twist;
 
 pub use curve::{SpaceCurve, SpaceFrame};
 pub use error::SpaceError;
 pub use map::SpaceMap;
+pub use roll::{Roll, RollError};
 pub use twist::{Twist, TwistError};

@@ -32,6 +32,11 @@ impl Twist {
         Self { whole: radians, table: Vec::new() }
     }
 
+    /// The same angle everywhere.
+    pub(super) fn constant(radians: f64) -> Self {
+        Self { whole: 0.0, table: vec![(0.0, radians)] }
+    }
+
     /// Both, one after the other.
     pub(super) fn and(&self, other: &Self) -> Self {
         debug_assert!(self.table.is_empty());
