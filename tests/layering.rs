@@ -65,7 +65,15 @@ const LIBRARIES: [(&str, &[&str]); 17] = [
     ("faer", &["src/fit/least_squares.rs"]),
     ("petgraph", &["src/reeb"]),
     ("usvg", &["src/exemplar", "src/verify", "src/analysis/overlay.rs"]),
-    ("resvg", &["src/export/canvas.rs", "src/export/view/mod.rs", "src/analysis/overlay.rs"]),
+    (
+        "resvg",
+        &[
+            "src/exemplar/heights.rs",
+            "src/export/canvas.rs",
+            "src/export/view/mod.rs",
+            "src/analysis/overlay.rs",
+        ],
+    ),
     ("svgtypes", &["src/exemplar"]),
     ("simplecss", &["src/exemplar"]),
     ("tempfile", &["src/export/staged.rs"]),

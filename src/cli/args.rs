@@ -12,7 +12,7 @@ use super::print::PrintArgs;
 use super::shell::{CompletionsArguments, ManArguments};
 use super::values;
 use crate::domain::{CurveSpec, RectSize, Roll, Twist};
-use crate::job::{KeptRange, SlicingChoice, StitchMethod};
+use crate::job::{Drape, KeptRange, SlicingChoice, StitchMethod};
 
 /// Ornament that can be made: new pattern from one SVG ornament, with exactly the components and holes you ask
 /// for, written as a part and counted again on the file.
@@ -194,6 +194,10 @@ pub(super) struct RectArguments {
     /// How high a rolled rectangle stands
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_negative_numbers = true, requires = "roll")]
     pub(super) height: Option<f64>,
+    /// Lay the rectangle over a height field that is stretched over it: a table of heights in mm, FILE.csv, or a picture whose white is
+    /// so high, FILE.png,height=20mm. Its sizes are those seen from above; what is rolled stands out by it
+    #[arg(long, value_name = "FILE", value_parser = values::drape)]
+    pub(super) drape: Option<Drape>,
     /// Make opposite sides match, so that copies join; the page is the tile, without a margin
     #[arg(long, conflicts_with = "roll")]
     pub(super) tile: bool,

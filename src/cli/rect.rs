@@ -36,7 +36,7 @@ pub(super) fn rect_job(arguments: &RectArguments) -> Result<RectJob, CliError> {
         (_, _, Some(size)) => RectBuilder::new(&arguments.exemplar, size),
         _ => unreachable!("the parser asks for a size, or a roll with its height"),
     };
-    Ok(rect.tile(arguments.tile).options(|_| band).build()?)
+    Ok(rect.tile(arguments.tile).drape(arguments.drape.clone()).options(|_| band).build()?)
 }
 
 fn say_rect(report: &RectReport, roll: Option<Roll>) {

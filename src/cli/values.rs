@@ -2,7 +2,7 @@
 
 use crate::domain::{CurveSpec, RectSize, Roll, parse_length_mm};
 use crate::fabricate::Bed;
-use crate::job::{KeptRange, SheetSize, SlicingChoice, StitchMethod, Wanted, WantedError};
+use crate::job::{Drape, KeptRange, SheetSize, SlicingChoice, StitchMethod, Wanted, WantedError};
 use crate::verify::Between;
 
 /// A length in millimetres: `12mm`, `1.2cm`, `0.5in`, `34pt`, `45px` or `12`.
@@ -69,6 +69,11 @@ pub(super) fn size(text: &str) -> Result<RectSize, String> {
 /// What a rectangle is rolled to: `diameter=120mm,top=80mm`.
 pub(super) fn roll(text: &str) -> Result<Roll, String> {
     text.parse::<Roll>().map_err(|e| e.to_string())
+}
+
+/// A height field: `hill.csv`, `hill.png,height=20mm`.
+pub(super) fn drape(text: &str) -> Result<Drape, String> {
+    text.parse::<Drape>().map_err(|e| e.to_string())
 }
 
 /// The size of a plate: `300x200mm`.

@@ -38,6 +38,6 @@ pub use curve::{Frame, PlanarCurve};
 pub use error::DomainError;
 pub use length::{LengthError, parse_length_mm};
 pub use size::{RectSize, RectSizeError};
-pub use space::{Roll, RollError, SpaceCurve, SpaceError, SpaceFrame, SpaceMap, Twist, TwistError};
+pub use space::{Relief, Roll, RollError, SpaceCurve, SpaceError, SpaceFrame, SpaceMap, Twist, TwistError};
 pub use spec::{CurveSpec, CurveSpecError};
 pub use squeeze::{Side, Squeeze};

@@ -22,6 +22,7 @@ mod artwork;
 mod check;
 mod curve;
 mod error;
+mod heights;
 mod limits;
 mod outline;
 mod scan;
@@ -44,6 +45,7 @@ use crate::planar::{Region, Tolerances};
 
 pub use self::curve::{path_from_svg, read_path};
 pub use self::error::{ExemplarError, ExemplarFault, Place};
+pub use self::heights::{Heights, HeightsError, read_heights};
 pub use self::limits::Limits;
 
 /// How to read an exemplar.

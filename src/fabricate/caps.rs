@@ -41,18 +41,21 @@ pub(super) fn triangulate(part: &Part) -> Result<Vec<[u32; 3]>, &'static str> {
     Ok(triangles)
 }
 
-/// The same with `inner` edges, by the numbers of vertices, among those of the triangles. They cross neither each other nor the
-/// part's outline.
+/// The same with more `vertices` after those of the outline, inside of the part, and with `inner` edges, by the numbers of vertices, among
+/// those of the triangles. They cross neither each other nor the part's outline.
 ///
 /// # Errors
 /// What was wrong with the engine's triangles.
-pub(super) fn triangulate_along(part: &Part, inner: &[[u32; 2]]) -> Result<Vec<[u32; 3]>, &'static str> {
-    let vertices: Vec<GridPoint> = part.contours().flat_map(|c| c.points()).copied().collect();
-    let triangles = constrained(part, &vertices, inner)?;
-    check(part, &vertices, &triangles)?;
+pub(super) fn triangulate_along(
+    part: &Part,
+    vertices: &[GridPoint],
+    inner: &[[u32; 2]],
+) -> Result<Vec<[u32; 3]>, &'static str> {
+    let triangles = constrained(part, vertices, inner)?;
+    check(part, vertices, &triangles)?;
     let sides = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
     let sides: FxHashSet<[u32; 2]> = sides.collect();
-    match inner.iter().all(|edge| sides.contains(edge)) {
+    match inner.iter().all(|&[a, b]| sides.contains(&[a, b]) && sides.contains(&[b, a])) {
         true => Ok(triangles),
         false => Err("an inner edge that no triangle has"),
     }
@@ -153,11 +156,11 @@ fn constrained(
     Ok(ink.map(|face| face.vertices().map(|v| v.index() as u32)).collect())
 }
 
-/// Whether `triangles` are a triangulation of `part` without new or lost vertices: all of positive area,
-/// of the right number and total area, meeting in pairs along inner edges, and alone along the part's own.
-/// Exact.
+/// Whether `triangles` are a triangulation of `part` with these vertices, those of its outline first, and no others: all of positive
+/// area, of the right number and total area, meeting in pairs along inner edges, and alone along the part's own. Exact.
 fn check(part: &Part, vertices: &[GridPoint], triangles: &[[u32; 3]]) -> Result<(), &'static str> {
-    if triangles.len() + 2 != vertices.len() + 2 * part.holes().len() {
+    let outline: usize = part.contours().map(|c| c.points().len()).sum();
+    if triangles.len() + 2 != 2 * vertices.len() - outline + 2 * part.holes().len() {
         return Err("a wrong number of triangles");
     }
     let mut area = 0;

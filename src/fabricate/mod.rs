@@ -28,6 +28,7 @@ mod inset;
 mod kerf;
 mod limbs;
 mod limit;
+mod lines;
 mod material;
 mod process;
 mod profile;

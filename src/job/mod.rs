@@ -31,6 +31,7 @@ mod choice;
 mod cut;
 mod deliver;
 mod describe;
+mod drape;
 mod engrave;
 mod error;
 mod extrude;
@@ -75,6 +76,7 @@ pub use certificate::{
 };
 pub use choice::{Choice, Chosen, DEFAULT_TEMPERATURE, choose};
 pub use cut::READ_SHARE;
+pub use drape::{Drape, DrapeError};
 pub use error::{JobError, OutlineFault};
 pub use extrude::{ExtrudeBridges, ExtrudeMaking, ExtrudeReport, extrude};
 pub use laser::{LaserFile, LaserOptions, LaserReport};

@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use super::builder::{BandBuilder, BandJob};
+use super::drape::Drape;
 use super::error::JobError;
 use super::output::{Output, Target};
 use super::rect::Rect;
 use super::space::{self, refuse_flat_only};
 use super::stage::Stage;
-use crate::domain::{CurveSpec, RectSize, Roll, SpaceMap};
+use crate::domain::{CurveSpec, RectSize, Roll, SpaceCurve, SpaceMap};
 
 /// Collects the options of a rectangle (Zhou 2014 §6.2).
 #[derive(Debug, Clone)]
@@ -16,6 +17,7 @@ pub struct RectBuilder {
     band: BandBuilder,
     size: Sides,
     tile: bool,
+    drape: Option<Drape>,
 }
 
 /// How large a rectangle is.
@@ -33,7 +35,7 @@ impl RectBuilder {
     /// A rectangle of the exemplar in an SVG file.
     pub fn new(exemplar: impl AsRef<Path>, size: RectSize) -> Self {
         let along = CurveSpec::Line { length_mm: size.width_mm() };
-        Self { band: BandBuilder::new(exemplar, along), size: Sides::Flat(size), tile: false }
+        Self { band: BandBuilder::new(exemplar, along), size: Sides::Flat(size), tile: false, drape: None }
     }
 
     /// A rectangle that is rolled to a cylinder or a cone `height_mm` high, its sides joined. It has the components and holes
@@ -44,6 +46,7 @@ impl RectBuilder {
             band: BandBuilder::new(exemplar, along),
             size: Sides::Rolled { roll, height_mm },
             tile: false,
+            drape: None,
         }
     }
 
@@ -73,6 +76,12 @@ impl RectBuilder {
         self
     }
 
+    /// The height field that it is laid over, stretched over the whole of it; what is rolled stands out by it.
+    pub fn drape(mut self, drape: Option<Drape>) -> Self {
+        self.drape = drape;
+        self
+    }
+
     /// Checks every option by its name.
     ///
     /// # Errors
@@ -81,9 +90,12 @@ impl RectBuilder {
     pub fn build(self) -> Result<RectJob, JobError> {
         let mut band = self.band.build()?;
         let (size, space) = match self.size {
-            Sides::Flat(size) => (size, None),
+            Sides::Flat(size) => {
+                let lain = self.drape.as_ref().map(|drape| draped(&band, drape, size, self.tile));
+                (size, lain.transpose()?)
+            }
             Sides::Rolled { roll, height_mm } => {
-                let (size, map) = rolled(&band, roll, height_mm)?;
+                let (size, map) = rolled(&band, roll, height_mm, self.drape.as_ref())?;
                 (size, Some(map))
             }
         };
@@ -129,7 +141,12 @@ impl RectBuilder {
 }
 
 /// The rectangle that becomes a roll, and how it is rolled.
-fn rolled(band: &BandJob, roll: Roll, height_mm: f64) -> Result<(RectSize, SpaceMap), JobError> {
+fn rolled(
+    band: &BandJob,
+    roll: Roll,
+    height_mm: f64,
+    drape: Option<&Drape>,
+) -> Result<(RectSize, SpaceMap), JobError> {
     let refuse = |option: &'static str, found: &str, wanted: &str| {
         Err(JobError::Option { option, found: found.to_owned(), wanted: wanted.to_owned() })
     };
@@ -141,7 +158,22 @@ fn rolled(band: &BandJob, roll: Roll, height_mm: f64) -> Result<(RectSize, Space
     }
     let (curve, slant_mm) = roll.curve(height_mm, options.thickness_mm)?;
     let size = RectSize::new(curve.length_mm(), slant_mm)?;
-    Ok((size, space::standing(curve, slant_mm, options.thickness_mm, &band.tolerances)?))
+    let relief = drape.map(|drape| drape.relief(&curve, slant_mm)).transpose()?;
+    Ok((size, space::standing(curve, slant_mm, options.thickness_mm, relief, &band.tolerances)?))
+}
+
+/// How a rectangle lies over a height field.
+fn draped(band: &BandJob, drape: &Drape, size: RectSize, tile: bool) -> Result<SpaceMap, JobError> {
+    if tile {
+        return Err(JobError::Option {
+            option: "--drape",
+            found: "copies of a --tile join in the plane".to_owned(),
+            wanted: "leave out one of the two".to_owned(),
+        });
+    }
+    let curve = SpaceCurve::lying(size.width_mm())?;
+    let relief = Some(drape.relief(&curve, size.height_mm())?);
+    space::standing(curve, size.height_mm(), band.options.thickness_mm, relief, &band.tolerances)
 }
 
 /// A rectangle whose options are in order.

@@ -10,7 +10,9 @@ use super::builder::BandJob;
 use super::error::JobError;
 use super::json;
 use super::rect_rows::Way;
-use super::report::{BandReport, DroppedCutReport, FlatPattern, InputReport, MadeReport, SeamReport, StitchReport};
+use super::report::{
+    BandReport, DroppedCutReport, FlatPattern, InputReport, MadeReport, SeamReport, StitchReport,
+};
 use crate::topology::Wanted;
 use crate::verify::Tiling;
 

@@ -10,7 +10,7 @@ use super::error::JobError;
 use super::part::Part;
 use super::points::read_points;
 use super::print::PrintOptions;
-use crate::domain::{CurveSpec, PlanarCurve, SpaceCurve, SpaceMap, Twist};
+use crate::domain::{CurveSpec, PlanarCurve, Relief, SpaceCurve, SpaceMap, Twist};
 use crate::fabricate::{self, Solid};
 use crate::planar::Tolerances;
 
@@ -115,9 +115,9 @@ pub(super) fn space_map(job: &BandJob, curve: SpaceCurve, height_mm: f64) -> Res
     let thickness_mm = job.options.thickness_mm;
     match job.options.along {
         CurveSpec::Ring { .. } | CurveSpec::Helix { .. } => {
-            standing(curve, height_mm, thickness_mm, &job.tolerances)
+            standing(curve, height_mm, thickness_mm, None, &job.tolerances)
         }
-        _ => laid(curve, height_mm, thickness_mm, &job.tolerances),
+        _ => laid(curve, height_mm, thickness_mm, None, &job.tolerances),
     }
 }
 
@@ -126,10 +126,11 @@ fn laid(
     curve: SpaceCurve,
     height_mm: f64,
     thickness_mm: f64,
+    relief: Option<Relief>,
     tolerances: &Tolerances,
 ) -> Result<SpaceMap, JobError> {
     let [v, w] = [height_mm, thickness_mm].map(|mm| [-0.5 * mm, 0.5 * mm]);
-    Ok(SpaceMap::new(curve, v, w, tolerances.min_gap_mm())?)
+    Ok(SpaceMap::draped(curve, v, w, relief, tolerances.min_gap_mm())?)
 }
 
 /// The same, lifted so that its lowest corner is at z = 0.
@@ -137,9 +138,10 @@ pub(super) fn standing(
     curve: SpaceCurve,
     height_mm: f64,
     thickness_mm: f64,
+    relief: Option<Relief>,
     tolerances: &Tolerances,
 ) -> Result<SpaceMap, JobError> {
-    let map = laid(curve, height_mm, thickness_mm, tolerances)?;
+    let map = laid(curve, height_mm, thickness_mm, relief, tolerances)?;
     let low_mm = map.low_mm();
     Ok(map.lifted(-low_mm))
 }
@@ -180,9 +182,15 @@ pub(super) fn solid(part: &Part, map: &SpaceMap, chord_mm: f64) -> Result<Solid,
         let last = lines_mm.len() - 1;
         [lines_mm[0], lines_mm[last]] = joined.sides_mm;
     }
+    let levels_mm: Vec<f64> = map.levels(FACET_SHARE * chord_mm).iter().map(|v| v + shift.y).collect();
     let w_range = map.w_range_mm();
     let place = |p: DVec2, side: usize| map.place(p - shift + DVec2::new(cut_mm, 0.0), w_range[side]);
-    let sheet =
-        fabricate::Sheet { place: &place, lines_mm: &lines_mm, is_joined: part.joined.is_some(), chord_mm };
+    let sheet = fabricate::Sheet {
+        place: &place,
+        lines_mm: &lines_mm,
+        levels_mm: &levels_mm,
+        is_joined: part.joined.is_some(),
+        chord_mm,
+    };
     Ok(fabricate::wrap(&part.region, &sheet)?)
 }

@@ -5,7 +5,7 @@
 //! side is shorter than the band is thick, so that no band slips through another. Excluded: the pattern, which may leave room where two bands
 //! meet; they are refused all the same.
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
@@ -54,9 +54,10 @@ pub(super) fn first_contact(map: &SpaceMap, gap_mm: f64) -> Option<SpaceError> {
     let place = |i: usize| (i as f64 + 0.5) * step;
     let block = |i: usize| {
         let frame = map.curve().frame(place(i));
+        let [low, high] = map.heights_mm(place(i));
+        let (w0, w1) = (w0 + low, w1 + high);
         let corners = [(v0, w0), (v0, w1), (v1, w0), (v1, w1)];
-        let scale =
-            corners.map(|(v, w)| map.scale(DVec2::new(place(i), v), w)).into_iter().fold(1.0, f64::min);
+        let scale = corners.map(|(v, w)| map.scale_at(place(i), v, w)).into_iter().fold(1.0, f64::min);
         Block {
             middle: frame.point + frame.across * (0.5 * (v0 + v1)) + frame.out * (0.5 * (w0 + w1)),
             axes: [frame.along, frame.across, frame.out],

@@ -105,6 +105,14 @@ impl SpaceCurve {
         Ok(Self { kind, length, is_closed, twist: Twist::default(), lift: 0.0 })
     }
 
+    /// A straight line along x, v along y: what is laid along it lies on its back.
+    ///
+    /// # Errors
+    /// [`SpaceError::Points`] unless it has a length.
+    pub fn lying(length_mm: f64) -> Result<Self, SpaceError> {
+        Self::through(&[DVec3::ZERO, DVec3::X * length_mm], false)?.twisted(&Twist::constant(-FRAC_PI_2))
+    }
+
     /// A smooth curve through `points`. At its start v points up as far as it can, along y where the curve itself goes up.
     ///
     /// # Errors
@@ -364,6 +372,13 @@ mod tests {
         let quarter = whole.frame(0.25 * whole.length_mm());
         assert!(quarter.across.distance(ring().frame(0.25 * whole.length_mm()).out) < 1e-9);
         assert!(is_right_handed(&quarter));
+    }
+
+    #[test]
+    fn what_lies_shows_its_front() {
+        let frame = SpaceCurve::lying(80.0).unwrap().frame(30.0);
+        assert!(frame.point.distance(DVec3::X * 30.0) < 1e-9 && frame.across.distance(DVec3::Y) < 1e-9);
+        assert!(frame.out.distance(DVec3::Z) < 1e-9 && is_right_handed(&frame));
     }
 
     proptest! {

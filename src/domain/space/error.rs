@@ -108,6 +108,17 @@ pub enum SpaceError {
         /// How far it may reach.
         allowed_mm: f64,
     },
+    /// The relief is too steep.
+    #[error(
+        "the relief rises by {degrees:.0} degrees at ({:.2}, {:.2}, {:.2}) mm, where the sheet would be less than half as thick; 60 degrees are the most, so make it lower or smoother",
+        position.x, position.y, position.z
+    )]
+    Steep {
+        /// Where.
+        position: DVec3,
+        /// How steep.
+        degrees: f64,
+    },
     /// The band meets itself.
     #[error(
         "the band {} itself at ({:.2}, {:.2}, {:.2}) mm: {:.1} mm and {:.1} mm along the curve; use a narrower --width, a smaller --thickness, a greater pitch, or move the curve apart",

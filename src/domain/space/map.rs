@@ -5,19 +5,17 @@ use glam::{DVec2, DVec3};
 use super::contact::first_contact;
 use super::curve::{SpaceCurve, SpaceFrame};
 use super::error::SpaceError;
+use super::relief::Relief;
 
 /// What is left of lengths along the innermost edge of a bend, at least.
 pub(super) const LEAST_SCALE: f64 = 0.15;
 /// Places along the curve at which bends are looked at, for each millimetre and at least.
 const LOOKS_PER_MM: f64 = 4.0;
 const LOOKS: f64 = 256.0;
-/// A chord error below this gives no better part, only more facets.
-const MIN_CHORD_MM: f64 = 1e-4;
-/// The part of the chord error that is used, as the greatest error may lie between two samples.
-const CHORD_SHARE: f64 = 0.9;
-/// No facet goes round more of a bend or a twist than this, in radians: where samples are farther apart, a whole turn could look
-/// straight.
-const MOST_TURN: f64 = 0.5;
+/// Places across the band at which a relief is looked at.
+const LOOKS_ACROSS: usize = 24;
+/// The steepest slope of a relief, as a tangent. There the sheet has half of its thickness.
+const STEEPEST: f64 = 1.732_050_807_568_877_2;
 
 /// The map from (u, v, w) to space: u along a curve, v across the band, w through its thickness.
 ///
@@ -26,12 +24,15 @@ const MOST_TURN: f64 = 0.5;
 /// (1 − a v − b w) T − c w V + c v N, and the Jacobian determinant is 1 − a v − b w, whatever c is: nothing folds where that is
 /// positive, which is checked (at least 0.15 is kept). Zhou 2014 §3.5 takes such frames for planar curves.
 ///
+/// On a [`Relief`] h(u, v) it is S(u, v, h + w). The slopes of h only shear along N, so the determinant is 1 − a v − b (h + w).
+///
 /// That far places do not meet is checked with boxes along the band, to about the thickness; the file is judged exactly.
 #[derive(Debug, Clone)]
 pub struct SpaceMap {
     curve: SpaceCurve,
     v_range: [f64; 2],
     w_range: [f64; 2],
+    relief: Option<Relief>,
     scales: [f64; 2],
 }
 
@@ -48,10 +49,24 @@ impl SpaceMap {
         w_range_mm: [f64; 2],
         gap_mm: f64,
     ) -> Result<Self, SpaceError> {
+        Self::draped(curve, v_range_mm, w_range_mm, None, gap_mm)
+    }
+
+    /// The same on a relief.
+    ///
+    /// # Errors
+    /// As [`Self::new`], and [`SpaceError::Steep`] with the place.
+    pub fn draped(
+        curve: SpaceCurve,
+        v_range_mm: [f64; 2],
+        w_range_mm: [f64; 2],
+        relief: Option<Relief>,
+        gap_mm: f64,
+    ) -> Result<Self, SpaceError> {
         let scales = [1.0; 2];
-        let mut map = Self { curve, v_range: v_range_mm, w_range: w_range_mm, scales };
+        let mut map = Self { curve, v_range: v_range_mm, w_range: w_range_mm, relief, scales };
         map.check_folds()?;
-        map.scales = map.measured_scales();
+        map.scales = map.measured_scales()?;
         first_contact(&map, gap_mm).map_or(Ok(map), Err)
     }
 
@@ -73,13 +88,39 @@ impl SpaceMap {
     /// The place of (u, v) at height w.
     pub fn place(&self, uv: DVec2, w: f64) -> DVec3 {
         let frame = self.curve.frame(uv.x);
-        frame.point + frame.across * uv.y + frame.out * w
+        frame.point + frame.across * uv.y + frame.out * (self.height_mm(uv) + w)
     }
 
-    /// By how much lengths along the band are multiplied at (u, v, w).
-    pub fn scale(&self, uv: DVec2, w: f64) -> f64 {
-        let frame = self.curve.frame(uv.x);
-        1.0 - frame.curvature.dot(frame.across) * uv.y - frame.curvature.dot(frame.out) * w
+    /// How far the sheet stands out at (u, v).
+    pub(super) fn height_mm(&self, uv: DVec2) -> f64 {
+        self.relief.as_ref().map_or(0.0, |relief| relief.at(uv))
+    }
+
+    /// Whether it lies on a relief.
+    pub(super) fn has_relief(&self) -> bool {
+        self.relief.is_some()
+    }
+
+    /// The heights at a place along the curve, of which the greatest and the least are looked for at some places across.
+    pub(super) fn heights_mm(&self, u: f64) -> [f64; 2] {
+        if self.relief.is_none() {
+            return [0.0; 2];
+        }
+        let heights = self.looks_across().map(|v| self.height_mm(DVec2::new(u, v)));
+        heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], h| [low.min(h), high.max(h)])
+    }
+
+    /// Places across the band at which it is looked at: its sides, and on a relief some between.
+    pub(super) fn looks_across(&self) -> impl Iterator<Item = f64> + use<> {
+        let steps = if self.relief.is_some() { LOOKS_ACROSS } else { 1 };
+        let [low, high] = self.v_range;
+        (0..=steps).map(move |i| low + (high - low) * i as f64 / steps as f64)
+    }
+
+    /// By how much lengths along the band are multiplied at (u, v) and so far out from where it would be flat.
+    pub(super) fn scale_at(&self, u: f64, v: f64, out: f64) -> f64 {
+        let frame = self.curve.frame(u);
+        1.0 - frame.curvature.dot(frame.across) * v - frame.curvature.dot(frame.out) * out
     }
 
     /// The least and the greatest factor by which lengths on the band are multiplied, in any direction and anywhere: the singular
@@ -88,33 +129,54 @@ impl SpaceMap {
         self.scales
     }
 
-    fn measured_scales(&self) -> [f64; 2] {
+    fn measured_scales(&self) -> Result<[f64; 2], SpaceError> {
         let places: Vec<f64> = self.looks().collect();
         let frames: Vec<SpaceFrame> = places.iter().map(|&u| self.curve.frame(u)).collect();
         let mut scales = [1.0f64, 1.0];
         for (pair, u) in frames.windows(2).zip(places.windows(2)) {
             let [from, to] = [pair[0], pair[1]];
+            let step = u[1] - u[0];
             // How fast the frame turns about the curve.
-            let twist = (to.across - from.across).dot(from.out) / (u[1] - u[0]);
+            let twist = (to.across - from.across).dot(from.out) / step;
             let (a, b) = (from.curvature.dot(from.across), from.curvature.dot(from.out));
-            for (v, w) in (0..4).map(|i| (self.v_range[i % 2], self.w_range[i / 2])) {
-                let along = DVec3::new(1.0 - a * v - b * w, -twist * w, twist * v);
-                // Of the two columns S_u and V, whose lengths and angle are known.
-                let (square, shear) = (along.length_squared(), along.y);
-                let (half, apart) =
-                    (0.5 * (square + 1.0), (0.25 * (square - 1.0).powi(2) + shear * shear).sqrt());
-                let [least, most] = [half - apart, half + apart].map(|x| x.max(0.0).sqrt());
-                scales = [scales[0].min(least), scales[1].max(most)];
+            for v in self.looks_across() {
+                let [height, slope_u, slope_v] = self.slopes(DVec2::new(u[0], v), step);
+                for w in self.w_range.map(|w| w + height) {
+                    let along = DVec3::new(1.0 - a * v - b * w, -twist * w, twist * v + slope_u);
+                    let across = DVec3::new(0.0, 1.0, slope_v);
+                    let steep = slope_v.hypot(slope_u / along.x.max(LEAST_SCALE));
+                    if self.relief.is_some() && steep > STEEPEST {
+                        let position = self.place(DVec2::new(u[0], v), 0.0);
+                        return Err(SpaceError::Steep { position, degrees: steep.atan().to_degrees() });
+                    }
+                    // Of the two columns S_u and S_v, whose lengths and angle are known.
+                    let (p, q, shear) = (along.length_squared(), across.length_squared(), along.dot(across));
+                    let (half, apart) = (0.5 * (p + q), (0.25 * (p - q).powi(2) + shear * shear).sqrt());
+                    let [least, most] = [half - apart, half + apart].map(|x| x.max(0.0).sqrt());
+                    scales = [scales[0].min(least), scales[1].max(most)];
+                }
             }
         }
-        scales
+        Ok(scales)
+    }
+
+    /// The height of the relief and its slopes along u and v, over a `step`.
+    fn slopes(&self, uv: DVec2, step: f64) -> [f64; 3] {
+        if self.relief.is_none() {
+            return [0.0; 3];
+        }
+        let height = self.height_mm(uv);
+        let over = |by: DVec2| (self.height_mm(uv + by) - self.height_mm(uv - by)) / (2.0 * step);
+        [height, over(DVec2::new(step, 0.0)), over(DVec2::new(0.0, step))]
     }
 
     /// The lowest z of the band, at the places at which bends are looked at.
     pub fn low_mm(&self) -> f64 {
-        let corners = || (0..4).map(|i| (self.v_range[i % 2], self.w_range[i / 2]));
-        let at = |u: f64| corners().map(move |(v, w)| self.place(DVec2::new(u, v), w).z);
-        self.looks().flat_map(at).fold(f64::INFINITY, f64::min)
+        let corners = |u: f64| {
+            let across = self.looks_across().flat_map(move |v| self.w_range.map(|w| (v, w)));
+            across.map(move |(v, w)| self.place(DVec2::new(u, v), w).z)
+        };
+        self.looks().flat_map(corners).fold(f64::INFINITY, f64::min)
     }
 
     /// The same band, `by_mm` higher.
@@ -123,7 +185,7 @@ impl SpaceMap {
     }
 
     /// Places along the curve at which bends are looked at.
-    fn looks(&self) -> impl Iterator<Item = f64> {
+    pub(super) fn looks(&self) -> impl Iterator<Item = f64> {
         let length = self.curve.length_mm();
         let looks = (LOOKS_PER_MM * length).max(LOOKS).ceil();
         (0..=looks as usize).map(move |i| length * i as f64 / looks)
@@ -133,8 +195,9 @@ impl SpaceMap {
         for u in self.looks() {
             let frame = self.curve.frame(u);
             let (a, b) = (frame.curvature.dot(frame.across), frame.curvature.dot(frame.out));
+            let [low, high] = self.heights_mm(u);
             let reach = (a * self.v_range[0]).max(a * self.v_range[1])
-                + (b * self.w_range[0]).max(b * self.w_range[1]);
+                + (b * (low + self.w_range[0])).max(b * (high + self.w_range[1]));
             if 1.0 - reach < LEAST_SCALE {
                 let radius = frame.curvature.length().recip();
                 return Err(SpaceError::Fold {
@@ -147,56 +210,6 @@ impl SpaceMap {
             }
         }
         Ok(())
-    }
-
-    /// Places along the curve, from `start` to a whole length further, between which flat facets stay within `chord_mm` of the band.
-    /// The start is 0 on an open curve.
-    pub fn lines(&self, start: f64, chord_mm: f64) -> Vec<f64> {
-        let tolerance = CHORD_SHARE * chord_mm.max(MIN_CHORD_MM);
-        let mut lines = vec![start];
-        // Stretches that turn no more than a facet may, and end where a twist changes.
-        let length = self.curve.length_mm();
-        let creases = self.curve.creases().map(|u| if u < start { u + length } else { u });
-        let creases: Vec<f64> = creases.collect();
-        let mut places: Vec<f64> = self.looks().map(|u| u + start).chain(creases.iter().copied()).collect();
-        places.sort_by(f64::total_cmp);
-        let (mut from, mut turned) = (start, 0.0);
-        for pair in places.windows(2) {
-            let [a, b] = [pair[0], pair[1]].map(|u| self.curve.frame(u));
-            let is_crease = creases.contains(&pair[0]);
-            turned += a.along.angle_between(b.along).max(a.across.angle_between(b.across));
-            if (turned > MOST_TURN || is_crease) && pair[0] > from {
-                self.refine(from, pair[0], tolerance, &mut lines);
-                (from, turned) = (pair[0], 0.0);
-            }
-        }
-        self.refine(from, start + length, tolerance, &mut lines);
-        lines
-    }
-
-    /// Adds the places after `from` up to `to`.
-    fn refine(&self, from: f64, to: f64, tolerance: f64, lines: &mut Vec<f64>) {
-        if self.is_flat(from, to, tolerance) {
-            lines.push(to);
-            return;
-        }
-        let middle = 0.5 * (from + to);
-        self.refine(from, middle, tolerance, lines);
-        self.refine(middle, to, tolerance, lines);
-    }
-
-    /// Whether facets between two places stay within `tolerance` of the band, on its front and its back.
-    fn is_flat(&self, from: f64, to: f64, tolerance: f64) -> bool {
-        let corner = |u: f64, v: usize, w: usize| self.place(DVec2::new(u, self.v_range[v]), self.w_range[w]);
-        (0..2).all(|w| {
-            // Of facets in a strip that is twisted any may be on either side of it by this.
-            let twist = corner(from, 0, w) - corner(from, 1, w) - corner(to, 0, w) + corner(to, 1, w);
-            let bend = (0..2).flat_map(|v| [0.25, 0.5, 0.75].map(|part| (v, part))).map(|(v, part)| {
-                let chord = corner(from, v, w).lerp(corner(to, v, w), part);
-                corner(from + part * (to - from), v, w).distance(chord)
-            });
-            0.25 * twist.length() + bend.fold(0.0, f64::max) <= tolerance
-        })
     }
 }
 
@@ -218,7 +231,7 @@ mod tests {
                 && lines.is_sorted()
                 && (lines[lines.len() - 1] - map.curve().length_mm()).abs() < 1e-9
         );
-        assert!((map.scale(DVec2::ZERO, 1.0) - 34.5 / 33.5).abs() < 1e-12);
+        assert!((map.scale_at(0.0, 0.0, 1.0) - 34.5 / 33.5).abs() < 1e-12);
     }
 
     #[test]

@@ -9,7 +9,9 @@
 mod contact;
 mod curve;
 mod error;
+mod facets;
 mod map;
+mod relief;
 mod roll;
 mod spline;
 mod twist;
@@ -17,5 +19,6 @@ mod twist;
 pub use curve::{SpaceCurve, SpaceFrame};
 pub use error::SpaceError;
 pub use map::SpaceMap;
+pub use relief::Relief;
 pub use roll::{Roll, RollError};
 pub use twist::{Twist, TwistError};

@@ -126,9 +126,7 @@ mod tests {
             let roll: Roll = text.parse().unwrap();
             let (curve, slant) = roll.curve(100.0, 2.0).unwrap();
             let map = SpaceMap::new(curve, [-0.5 * slant, 0.5 * slant], [-1.0, 1.0], 0.0).unwrap();
-            for (u, v, diameter, z) in
-                [(0.0, -0.5, roll.bottom_mm, -50.0), (77.0, 0.5, roll.top_mm, 50.0)]
-            {
+            for (u, v, diameter, z) in [(0.0, -0.5, roll.bottom_mm, -50.0), (77.0, 0.5, roll.top_mm, 50.0)] {
                 let inside = map.place(DVec2::new(u, v * slant), -1.0);
                 let lean = (0.5 * (roll.bottom_mm - roll.top_mm) / 100.0).atan();
                 assert!((2.0 * inside.truncate().length() - diameter).abs() < 1e-9, "{text}: {inside}");
