@@ -192,7 +192,7 @@ pub(super) struct RectArguments {
     #[arg(long, value_name = "ROLL", value_parser = values::roll, requires = "height")]
     pub(super) roll: Option<Roll>,
     /// How high a rolled rectangle stands
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_negative_numbers = true, requires = "roll")]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_negative_numbers = true, requires = "roll", conflicts_with = "size")]
     pub(super) height: Option<f64>,
     /// Lay the rectangle over a height field that is stretched over it: a table of heights in mm, FILE.csv, or a picture whose white is
     /// so high, FILE.png,height=20mm. Its sizes are those seen from above; what is rolled stands out by it
