@@ -1,5 +1,6 @@
 //! Unions, differences and intersections of random solids: sound on reading, and adding up.
 
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3};
@@ -83,14 +84,15 @@ proptest! {
     fn what_two_solids_have_adds_up(a in shape(), b in shape(), motion in motion()) {
         let b = b.moved(&motion).unwrap();
         let [both, any, rest] = [intersection(&a, &b), union(&[&a, &b]), difference(&a, &b)].map(Result::unwrap);
-        let [a_euler, b_euler, both_euler, any_euler, rest_euler] = [&a, &b, &both, &any, &rest].map(euler);
+        let [a_euler, b_euler, both_euler, any_euler, _] = [&a, &b, &both, &any, &rest].map(euler);
         prop_assert_eq!(any_euler, a_euler + b_euler - both_euler);
         let of = Solid::volume_mm3;
         let near = |x: f64, y: f64| (x - y).abs() < 1e-4 * (of(&a) + of(&b));
         prop_assert!(near(of(&any), of(&a) + of(&b) - of(&both)), "{} {}", of(&any), of(&both));
         prop_assert!(near(of(&rest), of(&a) - of(&both)), "{} {}", of(&rest), of(&both));
-        // What was cut off and what is left are the whole again.
-        let _ = rest_euler;
+        // What is in one of them only is what is in any and not in both.
+        let other = difference(&b, &a).unwrap();
+        prop_assert!(near(of(&rest) + of(&other) + of(&both), of(&any)));
         prop_assert_eq!(&any, &union(&[&a, &b]).unwrap());
     }
 
@@ -104,27 +106,65 @@ proptest! {
     /// On a coarse lattice faces lie on each other and edges meet all the time.
     #[test]
     fn solids_on_a_lattice_are_sound_or_refused(
-        boxes in prop::collection::vec((0..4u8, 0..4u8, 0..4u8, 1..4u8, 1..4u8, 1..4u8), 2..6)
+        boxes in prop::collection::vec((0..4i8, 0..4i8, 0..4i8, 1..4i8, 1..4i8, 1..4i8), 2..6)
     ) {
         let solids: Vec<Solid> = boxes.iter().map(|&(x, y, z, w, d, h)| {
             let place = DVec3::new(x.into(), y.into(), z.into());
             cuboid([w, d, h].map(f64::from)).moved(&DAffine3::from_translation(place)).unwrap()
         }).collect();
-        let cells = |(x, y, z, w, d, h): (u8, u8, u8, u8, u8, u8)| {
-            (x..x + w).flat_map(move |x| (y..y + d).flat_map(move |y| (z..z + h).map(move |z| (x, y, z))))
+        let cells = |(x, y, z, w, d, h): Box6| {
+            (x..x + w).flat_map(move |x| (y..y + d).flat_map(move |y| (z..z + h).map(move |z| [x, y, z])))
         };
-        let filled: std::collections::BTreeSet<_> = boxes.iter().copied().flat_map(cells).collect();
-        match union(&solids.iter().collect::<Vec<_>>()) {
-            Ok(whole) => {
-                euler(&whole);
-                prop_assert!((whole.volume_mm3() - filled.len() as f64).abs() < 1e-6);
-            }
-            Err(FabricateError::Facets { found, .. }) => {
-                prop_assert!(found.contains("share an edge") || found.contains("one point"), "{}", found);
-            }
-            Err(error) => prop_assert!(false, "{}", error),
+        let filled: BTreeSet<[i8; 3]> = boxes.iter().copied().flat_map(cells).collect();
+        let whole = union(&solids.iter().collect::<Vec<_>>());
+        if is_manifold(&filled) {
+            let whole = whole.unwrap();
+            euler(&whole);
+            prop_assert!((whole.volume_mm3() - filled.len() as f64).abs() < 1e-6);
+        } else {
+            // What only touches may be told apart by chance, but not written as one.
+            let error = whole.map(|whole| { euler(&whole); });
+            let is_told = matches!(error, Ok(()) | Err(FabricateError::Facets { .. } | FabricateError::Rounding { .. }));
+            prop_assert!(is_told);
         }
     }
+}
+
+/// A corner and sizes.
+type Box6 = (i8, i8, i8, i8, i8, i8);
+
+/// Whether cells nowhere touch along an edge or in a corner only: around each corner of the lattice the filled cells are
+/// joined by faces, and so are the empty ones, and around each edge too.
+fn is_manifold(filled: &BTreeSet<[i8; 3]>) -> bool {
+    let around = |[x, y, z]: [i8; 3]| {
+        (0..8u8)
+            .map(|i| filled.contains(&[x - i as i8 % 2, y - i as i8 / 2 % 2, z - i as i8 / 4]))
+            .collect::<Vec<_>>()
+    };
+    let corners = (0..9).flat_map(|x| (0..9).flat_map(move |y| (0..9).map(move |z| [x, y, z])));
+    corners.map(around).all(|cells| {
+        let is_joined = |kind: bool| {
+            let of_kind: Vec<usize> = (0..8).filter(|&i| cells[i] == kind).collect();
+            let mut reached: Vec<usize> = of_kind.iter().take(1).copied().collect();
+            let mut next = 0;
+            while next < reached.len() {
+                let beside = [1, 2, 4].map(|bit| reached[next] ^ bit);
+                reached.extend(
+                    beside
+                        .into_iter()
+                        .filter(|&i| cells[i] == kind && !reached.contains(&i))
+                        .collect::<Vec<_>>(),
+                );
+                next += 1;
+            }
+            reached.len() == of_kind.len()
+        };
+        let crossed = |i: usize, [a, b]: [usize; 2]| {
+            cells[i] == cells[i ^ a ^ b] && cells[i] != cells[i ^ a] && cells[i] != cells[i ^ b]
+        };
+        let edges = [[1, 2], [1, 4], [2, 4]];
+        is_joined(true) && is_joined(false) && !edges.iter().any(|&pair| (0..8).any(|i| crossed(i, pair)))
+    })
 }
 
 #[test]

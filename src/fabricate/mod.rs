@@ -208,10 +208,11 @@ pub enum FabricateError {
         /// What is wrong there.
         found: &'static str,
     },
-    /// A solid is finer than the 32-bit floats of a mesh file.
+    /// Facets cross or touch in the 32-bit floats of a mesh file.
     #[error(
-        "in the 32-bit floats of a mesh file facets of the result cross each other, also without those that are \
-         thinner than {thin_mm:.1e} mm; move one of the solids a little, so that faces do not nearly coincide"
+        "in the 32-bit floats of a mesh file facets of the result cross or touch each other, also without those that are \
+         thinner than {thin_mm:.1e} mm; solids touch along an edge only, or faces nearly coincide: move one of the solids a \
+         little"
     )]
     Rounding {
         /// The last thickness that was tried.
