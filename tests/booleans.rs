@@ -78,7 +78,7 @@ fn euler(solid: &Solid) -> i64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(192))]
+    #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
     fn what_two_solids_have_adds_up(a in shape(), b in shape(), motion in motion()) {

@@ -51,8 +51,11 @@ impl Mesh {
                 return;
             }
             patience -= 1;
-            let changed = self.collapsed(facet, thin_mm).or_else(|| self.turned(facet));
-            queue.extend(changed.into_iter().flatten().filter(|i| is_thin(self, i)));
+            // What could not be taken out before may be now that its neighbours are others.
+            if let Some(changed) = self.collapsed(facet, thin_mm).or_else(|| self.turned(facet)) {
+                let near = changed.iter().flat_map(|&v| &self.around[v as usize]);
+                queue.extend(near.copied().filter(|i| is_thin(self, i)));
+            }
         }
     }
 
@@ -73,9 +76,9 @@ impl Mesh {
         if longest > 0.0 { self.normal(facet).length() / longest } else { 0.0 }
     }
 
-    /// Collapses the shortest side of the facet if it is shorter than `short_mm`. The facets that changed; `None` if that would
-    /// pinch the surface or turn a facet over.
-    fn collapsed(&mut self, facet: usize, short_mm: f64) -> Option<Vec<usize>> {
+    /// Collapses the shortest side of the facet if it is shorter than `short_mm`. The vertices around which facets changed; `None`
+    /// if that would pinch the surface or turn a facet over.
+    fn collapsed(&mut self, facet: usize, short_mm: f64) -> Option<Vec<u32>> {
         let corners = self.facets[facet]?;
         let length = |i: usize| {
             let [p, q] = [corners[i], corners[(i + 1) % 3]].map(|v| self.vertices[v as usize]);
@@ -90,7 +93,7 @@ impl Mesh {
     }
 
     /// Moves the vertex `gone` onto `kept`, its neighbour.
-    fn merged(&mut self, gone: u32, kept: u32, thin_mm: f64) -> Option<Vec<usize>> {
+    fn merged(&mut self, gone: u32, kept: u32, thin_mm: f64) -> Option<Vec<u32>> {
         // More than two neighbours in common would leave an edge with four facets.
         let near = self.neighbours(gone);
         if self.neighbours(kept).iter().filter(|v| near.contains(v)).count() != 2 {
@@ -117,7 +120,7 @@ impl Mesh {
         }
         self.around[gone as usize].clear();
         self.around[kept as usize].extend(&moved);
-        Some(self.around[kept as usize].clone())
+        Some(vec![kept])
     }
 
     fn neighbours(&self, v: u32) -> FxHashSet<u32> {
@@ -125,9 +128,9 @@ impl Mesh {
         corners.filter(|&w| w != v).collect()
     }
 
-    /// Turns the longest side of the facet so that it joins the two corners opposite of it. The two facets that changed; `None`
-    /// if those corners are joined already or the facets would be thinner than before, or look another way.
-    fn turned(&mut self, facet: usize) -> Option<Vec<usize>> {
+    /// Turns the longest side of the facet so that it joins the two corners opposite of it. The vertices around which facets
+    /// changed; `None` if those corners are joined already or the facets would be thinner than before, or look another way.
+    fn turned(&mut self, facet: usize) -> Option<Vec<u32>> {
         let corners = self.facets[facet]?;
         let length = |i: usize| {
             let [p, q] = [corners[i], corners[(i + 1) % 3]].map(|v| self.vertices[v as usize]);
@@ -154,7 +157,7 @@ impl Mesh {
         self.around[b as usize].retain(|&i| i != facet);
         self.around[c as usize].push(other);
         self.around[d as usize].push(facet);
-        Some(vec![facet, other])
+        Some(vec![a, b, c, d])
     }
 }
 
