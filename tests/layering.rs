@@ -58,9 +58,10 @@ const OWED: [(&str, &str); 3] = [
 ];
 
 /// Libraries that only these files or folders may name.
-const LIBRARIES: [(&str, &[&str]); 17] = [
+const LIBRARIES: [(&str, &[&str]); 18] = [
     ("i_overlay", &["src/planar/overlay.rs", "src/fabricate/caps.rs"]),
     ("i_triangle", &["src/fabricate/caps.rs"]),
+    ("manifold_rust", &["src/fabricate/boolean.rs"]),
     ("spade", &["src/verify", "src/fit/links.rs", "src/fabricate/caps.rs", "src/fabricate/enforce/core.rs"]),
     ("faer", &["src/fit/least_squares.rs"]),
     ("petgraph", &["src/reeb"]),

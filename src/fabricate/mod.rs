@@ -16,13 +16,18 @@
 //!
 //! On a curved sheet, as a ring or a helix, back and front are one triangulation that no line of the sheet crosses ([`wrap()`]).
 //!
+//! Solids may be moved, united and taken from each other ([`union`], [`difference`], [`intersection`], [`Solid::moved`]), and facets from
+//! elsewhere become a solid where they bound one ([`Solid::from_facets`]).
+//!
 //! Excluded: files. Nothing here knows how the region came to be.
 
 mod bays;
 mod bed;
+mod boolean;
 mod bridge;
 mod caps;
 mod enforce;
+mod facets;
 mod in_box;
 mod inset;
 mod kerf;
@@ -35,6 +40,7 @@ mod profile;
 mod raise;
 mod sheet;
 mod simplify;
+mod slivers;
 mod small;
 mod snap;
 mod solid;
@@ -43,6 +49,7 @@ mod wrap;
 
 pub use bays::{FilledBay, filled_bays};
 pub use bed::Bed;
+pub use boolean::{difference, intersection, union};
 pub use bridge::{Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts, bridge};
 pub use enforce::{Change, EnforceError, EnforceOptions, Enforced, TIP, enforce};
 pub use in_box::{Pressed, enforce_in_box};
@@ -60,7 +67,7 @@ pub use solid::{Shell, Solid, extrude};
 pub use workshop::{Workshop, WorkshopError};
 pub use wrap::{Sheet, wrap};
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use thiserror::Error;
 
 use crate::planar::GridError;
@@ -191,6 +198,35 @@ pub enum FabricateError {
         position_mm: DVec2,
         /// What is wrong with the triangles.
         found: &'static str,
+    },
+    /// Facets do not bound a solid.
+    #[error(
+        "the facets do not bound a solid: at ({:.4}, {:.4}, {:.4}) mm {found}", position_mm.x, position_mm.y, position_mm.z
+    )]
+    Facets {
+        /// Where, in millimetres.
+        position_mm: DVec3,
+        /// What is wrong there.
+        found: &'static str,
+    },
+    /// Facets cross or touch in the 32-bit floats of a mesh file.
+    #[error(
+        "in the 32-bit floats of a mesh file facets of the result cross or touch each other, also without those that are \
+         thinner than {thin_mm:.1e} mm; solids touch along an edge only, or faces nearly coincide: move one of the solids a \
+         little"
+    )]
+    Rounding {
+        /// The last thickness that was tried.
+        thin_mm: f64,
+    },
+    /// A motion that leaves no solid.
+    #[error("the motion flattens the solid, or is not finite; every factor must be other than 0")]
+    Motion,
+    /// The engine of unions and differences failed.
+    #[error("the engine for unions and differences failed ({found}); please report these solids")]
+    Engine {
+        /// What it says.
+        found: String,
     },
 }
 
