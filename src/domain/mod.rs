@@ -31,6 +31,7 @@ mod size;
 mod space;
 mod spec;
 mod squeeze;
+mod surface;
 mod trace;
 
 pub use band::BandMap;
@@ -41,3 +42,4 @@ pub use size::{RectSize, RectSizeError};
 pub use space::{Relief, Roll, RollError, SpaceCurve, SpaceError, SpaceFrame, SpaceMap, Twist, TwistError};
 pub use spec::{CurveSpec, CurveSpecError};
 pub use squeeze::{Side, Squeeze};
+pub use surface::{Mesh, MeshCurve, MeshPart, MeshRepair, RepairKind, SurfaceError};
