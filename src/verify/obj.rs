@@ -16,6 +16,11 @@ const MAX_BYTES: usize = 1 << 30;
 /// [`VerifyError`] with the line that cannot be read. What is wrong with the solid itself is a fault of the
 /// report.
 pub fn read_obj(bytes: &[u8]) -> Result<MeshReport, VerifyError> {
+    Ok(survey(&facets(bytes, false)?))
+}
+
+/// The facets of an OBJ, at least one. Faces with more than three corners are parted into `fans`, or else an error.
+pub(super) fn facets(bytes: &[u8], fans: bool) -> Result<Vec<Facet>, VerifyError> {
     if bytes.len() > MAX_BYTES {
         return Err(VerifyError::TooLarge { bytes: bytes.len(), limit: MAX_BYTES });
     }
@@ -37,7 +42,16 @@ pub fn read_obj(bytes: &[u8]) -> Result<MeshReport, VerifyError> {
             Some("v") => vertices.push(vertex(words).map_err(error)?),
             Some("f") => {
                 let corners = face(words, vertices.len()).map_err(error)?;
-                facets.push(Facet { normal: [0.0; 3], corners: corners.map(|v| vertices[v]) });
+                if corners.len() < 3 || corners.len() > 3 && !fans {
+                    return Err(error(format!(
+                        "a face of {} corners; only triangles are counted",
+                        corners.len()
+                    )));
+                }
+                facets.extend(corners[1..].windows(2).map(|pair| Facet {
+                    normal: [0.0; 3],
+                    corners: [corners[0], pair[0], pair[1]].map(|v| vertices[v]),
+                }));
             }
             None | Some("vn" | "vt" | "g" | "o" | "s" | "usemtl" | "mtllib") => {}
             Some(other) => {
@@ -47,7 +61,7 @@ pub fn read_obj(bytes: &[u8]) -> Result<MeshReport, VerifyError> {
     }
     match facets.is_empty() {
         true => Err(VerifyError::NoFacets),
-        false => Ok(survey(&facets)),
+        false => Ok(facets),
     }
 }
 
@@ -67,12 +81,8 @@ fn vertex<'a>(words: impl Iterator<Item = &'a str>) -> Result<[f32; 3], String> 
     Ok(point)
 }
 
-/// Three numbers of vertices, counted from 0.
-fn face<'a>(words: impl Iterator<Item = &'a str>, known: usize) -> Result<[usize; 3], String> {
-    let corners: Vec<&str> = words.collect();
-    let [a, b, c] = corners[..] else {
-        return Err(format!("a face of {} corners; only triangles are counted", corners.len()));
-    };
+/// Numbers of vertices, counted from 0.
+fn face<'a>(words: impl Iterator<Item = &'a str>, known: usize) -> Result<Vec<usize>, String> {
     let number = |corner: &str| {
         let text = corner.split('/').next().unwrap_or("");
         let number: i64 = text.parse().map_err(|_| format!("{corner:?} is no number of a vertex"))?;
@@ -84,7 +94,7 @@ fn face<'a>(words: impl Iterator<Item = &'a str>, known: usize) -> Result<[usize
             .filter(|&i| i < known)
             .ok_or_else(|| format!("vertex {number}, but {known} are given before it"))
     };
-    Ok([number(a)?, number(b)?, number(c)?])
+    words.map(number).collect()
 }
 
 #[cfg(test)]

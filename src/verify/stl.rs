@@ -19,6 +19,11 @@ const MAX_BYTES: usize = 1 << 30;
 /// [`VerifyError`] when the bytes are no whole STL. What is wrong with the solid itself is a fault of the
 /// report.
 pub fn read_stl(bytes: &[u8]) -> Result<MeshReport, VerifyError> {
+    Ok(survey(&facets(bytes)?))
+}
+
+/// The facets of an STL, all of finite numbers.
+pub(super) fn facets(bytes: &[u8]) -> Result<Vec<Facet>, VerifyError> {
     if bytes.len() > MAX_BYTES {
         return Err(VerifyError::TooLarge { bytes: bytes.len(), limit: MAX_BYTES });
     }
@@ -30,7 +35,7 @@ pub fn read_stl(bytes: &[u8]) -> Result<MeshReport, VerifyError> {
     let finite = |f: &Facet| f.corners.iter().flatten().all(|x| x.is_finite());
     match facets.iter().position(|f| !finite(f)) {
         Some(facet) => Err(VerifyError::NotFinite { facet }),
-        None => Ok(survey(&facets)),
+        None => Ok(facets),
     }
 }
 

@@ -41,6 +41,12 @@ const UNITS: [(&str, f64); 6] = [
 /// [`VerifyError`] when the package, its model or a mesh cannot be read, with the line of the model. What is
 /// wrong with the solid itself is a fault of the report.
 pub fn read_threemf(bytes: &[u8]) -> Result<MeshReport, VerifyError> {
+    let (facets, unit) = facets(bytes)?;
+    Ok(MeshReport { unit, ..survey(&facets) })
+}
+
+/// The facets of all that a 3MF builds, at least one, and the unit that it names.
+pub(super) fn facets(bytes: &[u8]) -> Result<(Vec<Facet>, Option<&'static str>), VerifyError> {
     if bytes.len() > MAX_BYTES {
         return Err(VerifyError::TooLarge { bytes: bytes.len(), limit: MAX_BYTES });
     }
@@ -51,7 +57,7 @@ pub fn read_threemf(bytes: &[u8]) -> Result<MeshReport, VerifyError> {
     let (facets, unit) = Model::facets_of(&text)?;
     match facets.is_empty() {
         true => Err(VerifyError::NoFacets),
-        false => Ok(MeshReport { unit, ..survey(&facets) }),
+        false => Ok((facets, unit)),
     }
 }
 
