@@ -16,4 +16,5 @@ mod twist;
 pub use curve::{SpaceCurve, SpaceFrame};
 pub use error::SpaceError;
 pub use map::SpaceMap;
+pub(super) use spline::Spline;
 pub use twist::{Twist, TwistError};
