@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+use super::surface::{SURFACE_HELP, SurfaceArguments};
 use super::laser::LaserArgs;
 use super::make::MakeArgs;
 use super::picture::PictureArgs;
@@ -31,6 +32,9 @@ pub(super) enum Command {
     /// Synthesize a rectangle, in both directions, and write it as SVG, DXF, STL, 3MF, OBJ or PNG
     #[command(after_help = RECT_HELP)]
     Rect(Box<RectArguments>),
+    /// Synthesize a band on a model (STL, 3MF, OBJ): a part that fits it, standing out from it, or carved out of it
+    #[command(after_help = SURFACE_HELP)]
+    Surface(Box<SurfaceArguments>),
     /// Show how an exemplar is understood: critical points, cuts, pieces, portals, descriptors
     #[command(after_help = ANALYZE_HELP)]
     Analyze(AnalyzeArguments),

@@ -26,6 +26,7 @@ mod rect;
 mod run;
 mod schema;
 mod shell;
+mod surface;
 mod values;
 mod verify;
 

@@ -10,7 +10,7 @@ use super::args::{
 };
 use super::laser::say_cuts;
 use super::progress::Progress;
-use super::{extrude, rect, schema, shell, verify};
+use super::{extrude, rect, schema, shell, surface, verify};
 use crate::analysis::{Analysis, AnalysisError};
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
 use crate::export;
@@ -74,6 +74,7 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, CliError> {
     match arguments.command {
         Command::Band(band) => run_band(&band),
         Command::Rect(arguments) => rect::run_rect(&arguments),
+        Command::Surface(arguments) => surface::run(&arguments),
         Command::Analyze(analyze) => run_analyze(&analyze),
         Command::Extrude(arguments) => extrude::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
@@ -260,7 +261,7 @@ pub(super) fn say_bridges(bridges: Option<&BridgesReport>, positions: &str) {
 /// Where the bridges of a pattern are listed and seen.
 pub(super) const BRIDGES_SHOWN: &str = "--report lists their positions, and a .png shows them in colour";
 
-fn say_band(report: &BandReport) {
+pub(super) fn say_band(report: &BandReport) {
     let closed = if report.closed_pattern { ", closed all the way round" } else { "" };
     say!(
         "{} component(s), {} hole(s){closed}: {} pieces along {:.1} mm, {} jumps",

@@ -2,7 +2,7 @@
 
 use crate::domain::{CurveSpec, RectSize, Roll, parse_length_mm};
 use crate::fabricate::Bed;
-use crate::job::{Drape, KeptRange, SheetSize, SlicingChoice, StitchMethod, Wanted, WantedError};
+use crate::job::{ControlPoints, Drape, Height, KeptRange, SheetSize, SlicingChoice, StitchMethod, Wanted, WantedError};
 use crate::verify::Between;
 
 /// A length in millimetres: `12mm`, `1.2cm`, `0.5in`, `34pt`, `45px` or `12`.
@@ -74,6 +74,16 @@ pub(super) fn roll(text: &str) -> Result<Roll, String> {
 /// A height field: `hill.csv`, `hill.png,height=20mm`.
 pub(super) fn drape(text: &str) -> Result<Drape, String> {
     text.parse::<Drape>().map_err(|e| e.to_string())
+}
+
+/// A height on a model: `30mm`, `50%`.
+pub(super) fn height(text: &str) -> Result<Height, String> {
+    text.parse::<Height>().map_err(|e| e.to_string())
+}
+
+/// Points of a model: `20,0,10; 0,20,20`.
+pub(super) fn points(text: &str) -> Result<ControlPoints, String> {
+    text.parse::<ControlPoints>().map_err(|e| e.to_string())
 }
 
 /// The size of a plate: `300x200mm`.

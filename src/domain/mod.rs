@@ -42,4 +42,4 @@ pub use size::{RectSize, RectSizeError};
 pub use space::{Relief, Roll, RollError, SpaceCurve, SpaceError, SpaceFrame, SpaceMap, Twist, TwistError};
 pub use spec::{CurveSpec, CurveSpecError};
 pub use squeeze::{Side, Squeeze};
-pub use surface::{Mesh, MeshCurve, MeshPart, MeshRepair, RepairKind, SurfaceError};
+pub use surface::{Mesh, MeshCurve, MeshHeights, MeshPart, MeshRepair, RepairKind, SurfaceError};

@@ -48,6 +48,11 @@ pub enum CurveSpec {
         /// A table of x, y and z in millimetres, or an OBJ with a polyline.
         file: PathBuf,
     },
+    /// A curve on a model, which is no part of the name.
+    Model {
+        /// An STL, a 3MF or an OBJ.
+        file: PathBuf,
+    },
 }
 
 /// A text that names no curve.
@@ -186,6 +191,7 @@ impl fmt::Display for CurveSpec {
                 write!(f, "helix:{inner_mm}mm,pitch={pitch_mm}mm,turns={turns}")
             }
             Self::Points { file } => write!(f, "points:{}", file.display()),
+            Self::Model { file } => write!(f, "a curve on {}", file.display()),
             Self::Path { file, id: None } => write!(f, "path:{}", file.display()),
             Self::Path { file, id: Some(id) } => write!(f, "path:{}#{id}", file.display()),
         }

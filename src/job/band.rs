@@ -21,6 +21,7 @@ use super::raised::Raised;
 use super::report::{BandReport, FlatPattern, InputReport};
 use super::space::{self, read_space_curve};
 use super::stage::{Clock, Stage};
+use super::surface::Ground;
 use super::ways::{Runs, ways, weighed, weighed_note};
 use crate::domain::{BandMap, CurveSpec, PlanarCurve, SpaceCurve, SpaceMap};
 use crate::exemplar::{Limits, read_path};
@@ -67,6 +68,14 @@ impl Band {
         outputs: &[Output],
         progress: &mut dyn FnMut(Stage),
     ) -> Result<Vec<Self>, JobError> {
+        let ground = match (&job.options.surface, &job.ground) {
+            (Some(options), None) => {
+                progress(Stage::Read);
+                Some(Ground::new(options)?)
+            }
+            (_, ground) => ground.clone(),
+        };
+        let job = &BandJob { ground, ..job.clone() };
         let (bands, is_fine_enough) = Self::all_within_chord(job, outputs, progress)?;
         if is_fine_enough {
             return Ok(bands);
@@ -95,7 +104,7 @@ impl Band {
         let mut clock = Clock::new(progress);
         let options = &job.options;
         let (exemplar, curve, in_space, curve_input) = clock.time(Stage::Read, || {
-            let in_space = read_space_curve(options)?;
+            let in_space = read_space_curve(job)?;
             let (curve, input) = read_curve(&options.along, options.round_mm, in_space.as_ref())?;
             Ok::<_, JobError>((read_exemplar(job)?, curve, in_space, input))
         })?;
@@ -166,6 +175,7 @@ impl Band {
             let mut band = Self::made_with(&mut prepared, job, cut, run, map, curve_input, clock)?;
             band.space = space.cloned();
             band.report.flat = band.flat_pattern();
+            band.report.made.notes.extend(job.ground.iter().flat_map(Ground::notes).cloned());
             band.report.rank = matches!(job.options.choice, Choice::Best(_)).then_some(rank);
             if let Some(width_mm) = runs.bridge_mm {
                 let inside = bridging::inside(map).map(|p| p + band.part.shift_mm);
@@ -329,7 +339,7 @@ fn read_curve(
     let read = |file: &Path| InputReport { file: file.display().to_string(), sha256: sha256_of(file) };
     if let Some(curve) = in_space {
         let input = match spec {
-            CurveSpec::Points { file } => Some(read(file)),
+            CurveSpec::Points { file } | CurveSpec::Model { file } => Some(read(file)),
             _ => None,
         };
         return Ok((space::flat(curve)?, input));
@@ -345,7 +355,10 @@ fn read_curve(
             };
             (curve, Some(read(file)))
         }
-        CurveSpec::Ring { .. } | CurveSpec::Helix { .. } | CurveSpec::Points { .. } => {
+        CurveSpec::Ring { .. }
+        | CurveSpec::Helix { .. }
+        | CurveSpec::Points { .. }
+        | CurveSpec::Model { .. } => {
             unreachable!("a curve in space was read before")
         }
     })

@@ -13,6 +13,7 @@ use super::plan::DEFAULT_MEMORY_LIMIT;
 use super::print::PrintOptions;
 use super::space::SpaceOptions;
 use super::stage::Stage;
+use super::surface::{Ground, SurfaceMode, SurfaceOptions};
 use crate::domain::CurveSpec;
 use crate::fabricate::Material;
 use crate::fit::StitchMethod;
@@ -62,6 +63,7 @@ pub struct BandBuilder {
     pub(super) enforce: bool,
     pub(super) material: Option<Material>,
     pub(super) space: SpaceOptions,
+    pub(super) surface: Option<SurfaceOptions>,
     chord_mm: f64,
     min_feature_mm: f64,
     pub(super) min_gap_mm: f64,
@@ -99,10 +101,17 @@ impl BandBuilder {
             enforce: false,
             material: None,
             space: SpaceOptions::default(),
+            surface: None,
             chord_mm: Tolerances::DEFAULT_CHORD_MM,
             min_feature_mm: 0.0,
             min_gap_mm: 0.0,
         }
+    }
+
+    /// A band of the exemplar in an SVG file on a model (Zhou 2014 §6.3).
+    pub fn on_model(exemplar: impl AsRef<Path>, surface: SurfaceOptions) -> Self {
+        let along = CurveSpec::Model { file: surface.model.clone() };
+        Self { surface: Some(surface), ..Self::new(exemplar, along) }
     }
 
     /// The height H of the band, to which the exemplar is scaled; left out, it is the exemplar's own.
@@ -285,6 +294,11 @@ impl BandBuilder {
         self
     }
 
+    /// Whether the pattern is cut out of a model, so that its gaps are what is kept.
+    pub(super) fn carves_model(&self) -> bool {
+        self.surface.as_ref().is_some_and(|surface| surface.mode == SurfaceMode::Carve)
+    }
+
     /// Checks every option by its name.
     ///
     /// # Errors
@@ -292,7 +306,10 @@ impl BandBuilder {
     pub fn build(self) -> Result<BandJob, JobError> {
         self.weights.validate()?;
         let kept = Tolerances::new(self.chord_mm, self.min_feature_mm, self.min_gap_mm)?;
-        let tolerances = self.laser.of_pattern(&kept);
+        let tolerances = match self.carves_model() {
+            true => kept.swapped(),
+            false => self.laser.of_pattern(&kept),
+        };
         if let Some(width) = self.width_mm {
             in_range("--width", width, 0.5, 10_000.0)?;
         }
@@ -324,7 +341,7 @@ impl BandBuilder {
         }
         let variety = (self.beta > 0.0).then(|| Variety::new(self.beta));
         let memory_limit = self.memory_limit;
-        Ok(BandJob { options: self, tolerances, variety, memory_limit })
+        Ok(BandJob { options: self, tolerances, variety, memory_limit, ground: None })
     }
 }
 
@@ -348,6 +365,8 @@ pub struct BandJob {
     pub(super) variety: Option<Variety>,
     /// The memory that the search may take, in bytes.
     pub(super) memory_limit: usize,
+    /// The model that it lies on, once that was read.
+    pub(super) ground: Option<Ground>,
 }
 
 impl BandJob {
@@ -369,7 +388,9 @@ impl BandJob {
     /// Refuses targets that would overwrite each other or an input.
     fn check_targets<'t>(&self, targets: impl IntoIterator<Item = &'t Target>) -> Result<(), JobError> {
         let curve = match &self.options.along {
-            CurveSpec::Path { file, .. } | CurveSpec::Points { file } => Some(file.as_path()),
+            CurveSpec::Path { file, .. } | CurveSpec::Points { file } | CurveSpec::Model { file } => {
+                Some(file.as_path())
+            }
             CurveSpec::Line { .. }
             | CurveSpec::Circle { .. }
             | CurveSpec::Ring { .. }

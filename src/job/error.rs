@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use glam::DVec2;
 use thiserror::Error;
 
-use crate::domain::{DomainError, RectSizeError, SpaceError};
+use crate::domain::{DomainError, RectSizeError, SpaceError, SurfaceError};
 use crate::exemplar::ExemplarError;
 use crate::export::ExportError;
 use crate::fabricate::{BridgeError, EnforceError, FabricateError, KerfError, SheetError};
@@ -27,6 +27,9 @@ pub enum JobError {
     /// The curve in space cannot carry the band.
     #[error(transparent)]
     Space(#[from] SpaceError),
+    /// A model cannot be used, or no curve lies on it.
+    #[error(transparent)]
+    Surface(#[from] SurfaceError),
     /// A rectangle is too small or too large.
     #[error(transparent)]
     Size(#[from] RectSizeError),
@@ -148,6 +151,7 @@ impl JobError {
             Self::Exemplar(_)
             | Self::Domain(_)
             | Self::Space(_)
+            | Self::Surface(_)
             | Self::Size(_)
             | Self::Tolerances(_)
             | Self::Weights(_)

@@ -16,6 +16,7 @@ use super::print;
 use super::raised::{Raised, Wanted};
 use super::space;
 use super::stage::{Clock, Stage};
+use super::surface::MergedCounts;
 use crate::export::{self, MeshDocument, SvgDocument, SvgOptions};
 use crate::fabricate::{Counts, Solid};
 use crate::planar::{Region, Tolerances};
@@ -136,19 +137,30 @@ impl Band {
         let options = &self.job.options;
         let chord_mm = self.job.tolerances.chord_mm();
         if let Some(map) = &self.space {
-            return space::solid(&self.part, map, chord_mm);
+            let solid = space::solid(&self.part, map, chord_mm)?;
+            return match self.merged_counts()? {
+                Some(_) => self.job.ground.as_ref().expect("it has counts with a model").merged(&solid),
+                None => Ok(solid),
+            };
         }
         options.print.solid(&self.part.region, options.thickness_mm, chord_mm, notes)
+    }
+
+    /// What the model has on which it lies, if they are one part.
+    pub(super) fn merged_counts(&self) -> Result<Option<MergedCounts>, JobError> {
+        let ground = self.job.ground.as_ref();
+        Ok(ground.map(|ground| ground.merged_counts(self.counts)).transpose()?.flatten())
     }
 
     /// The solid and its files for those of `outputs` that hold it, and for its picture and its volume.
     pub(super) fn raised(&self, outputs: &[Output], clock: &mut Clock<'_>) -> Result<Raised, JobError> {
         let options = &self.job.options;
         let is_leaning = !options.print.profile(options.thickness_mm)?.is_upright();
+        let merged = self.merged_counts()?;
         let wanted = Wanted {
             outputs,
             document: &self.document(),
-            expected: &self.expected(),
+            expected: &merged.map_or_else(|| self.expected(), MergedCounts::expected),
             // The volume of what is bent is not that of what is flat.
             is_shown: options.picture.view.is_some()
                 || ((is_leaning || self.space.is_some()) && !options.laser.carve),
@@ -196,11 +208,14 @@ impl Band {
             )
         };
         let tolerances = &self.kept_tolerances();
+        // What is carved out of a model is its gap.
+        let [feature, gap] = match self.job.options.carves_model() {
+            true => ["--min-gap", "--min-feature"],
+            false => ["--min-feature", "--min-gap"],
+        };
         let remedy = match mismatch {
-            Mismatch::Feature { .. } => {
-                scale(found.ink.first(), tolerances.min_feature_mm(), "--min-feature")
-            }
-            Mismatch::Gap { .. } => scale(found.gaps.first(), tolerances.min_gap_mm(), "--min-gap"),
+            Mismatch::Feature { .. } => scale(found.ink.first(), tolerances.min_feature_mm(), feature),
+            Mismatch::Gap { .. } => scale(found.gaps.first(), tolerances.min_gap_mm(), gap),
             Mismatch::Components { .. } | Mismatch::Holes { .. } => {
                 let chord_mm = tolerances.chord_mm();
                 format!(

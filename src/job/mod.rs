@@ -63,6 +63,7 @@ mod several;
 mod small;
 mod space;
 mod stage;
+mod surface;
 mod unrolled;
 mod ways;
 
@@ -76,6 +77,7 @@ pub use certificate::{
 };
 pub use choice::{Choice, Chosen, DEFAULT_TEMPERATURE, choose};
 pub use cut::READ_SHARE;
+pub use surface::{ControlPoints, Ground, Height, Route, RouteError, SurfaceMode, SurfaceOptions};
 pub use drape::{Drape, DrapeError};
 pub use error::{JobError, OutlineFault};
 pub use extrude::{ExtrudeBridges, ExtrudeMaking, ExtrudeReport, extrude};

@@ -95,7 +95,7 @@ impl Strips {
             whole.min_gap_mm(),
         )?;
         let memory_limit = job.band.memory_limit.min(STRIP_MEMORY_LIMIT);
-        let band = BandJob { options, tolerances, variety: job.band.variety, memory_limit };
+        let band = BandJob { options, tolerances, variety: job.band.variety, memory_limit, ground: None };
         let exemplar = clock.time(Stage::Read, || read_exemplar(&band))?;
         Ok(Self {
             job: band,

@@ -5,7 +5,7 @@
 
 use glam::DVec2;
 
-use super::builder::{BandBuilder, BandJob};
+use super::builder::BandJob;
 use super::error::JobError;
 use super::part::Part;
 use super::points::read_points;
@@ -33,7 +33,8 @@ pub struct SpaceOptions {
 ///
 /// # Errors
 /// [`JobError`] for a curve that cannot be read or used, and for a gap where there is no ring.
-pub(super) fn read_space_curve(options: &BandBuilder) -> Result<Option<SpaceCurve>, JobError> {
+pub(super) fn read_space_curve(job: &BandJob) -> Result<Option<SpaceCurve>, JobError> {
+    let options = &job.options;
     let middle = |inner_mm: f64| 0.5 * (inner_mm + options.thickness_mm);
     let SpaceOptions { gap_mm, twist } = &options.space;
     let refuse = |option: &'static str, found: &str, wanted: &str| {
@@ -61,6 +62,13 @@ pub(super) fn read_space_curve(options: &BandBuilder) -> Result<Option<SpaceCurv
         CurveSpec::Points { file } => {
             let read = read_points(file)?;
             SpaceCurve::through(&read.points, read.is_closed)?
+        }
+        CurveSpec::Model { .. } => {
+            let ground = job.ground.as_ref().expect("a band on a model has one");
+            if twist.is_some() {
+                return refuse("--twist", "a band on a model lies as the model does", "leave it out");
+            }
+            ground.curve().clone()
         }
         _ if twist.is_some() => {
             let wanted = "use it with --along ring, helix or points, or leave it out";
@@ -113,6 +121,9 @@ pub(super) fn flat(curve: &SpaceCurve) -> Result<PlanarCurve, JobError> {
 /// The map of a band of `height_mm` along the curve. A ring or a helix is lifted so that its lowest corner is at z = 0.
 pub(super) fn space_map(job: &BandJob, curve: SpaceCurve, height_mm: f64) -> Result<SpaceMap, JobError> {
     let thickness_mm = job.options.thickness_mm;
+    if let Some(ground) = &job.ground {
+        return ground.map(job, height_mm);
+    }
     match job.options.along {
         CurveSpec::Ring { .. } | CurveSpec::Helix { .. } => {
             standing(curve, height_mm, thickness_mm, None, &job.tolerances)

@@ -21,4 +21,5 @@ pub use error::SpaceError;
 pub use map::SpaceMap;
 pub use relief::Relief;
 pub use roll::{Roll, RollError};
+pub(super) use spline::Spline;
 pub use twist::{Twist, TwistError};

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 /// A cubic spline by its knots, with a point and a second derivative at each.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Spline {
+pub(in super::super) struct Spline {
     knots: Vec<f64>,
     points: Vec<DVec3>,
     bends: Vec<DVec3>,
@@ -15,15 +15,15 @@ pub(super) struct Spline {
 
 /// Where a curve is at a parameter, with its first and second derivative.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Jet {
-    pub(super) point: DVec3,
-    pub(super) velocity: DVec3,
-    pub(super) bend: DVec3,
+pub(in super::super) struct Jet {
+    pub(in super::super) point: DVec3,
+    pub(in super::super) velocity: DVec3,
+    pub(in super::super) bend: DVec3,
 }
 
 impl Spline {
     /// The spline through `points`, of which no two in a row are the same; at least two, and three that close.
-    pub(super) fn through(points: &[DVec3], is_closed: bool) -> Self {
+    pub(in super::super) fn through(points: &[DVec3], is_closed: bool) -> Self {
         let mut points = points.to_vec();
         if is_closed {
             points.push(points[0]);
@@ -62,12 +62,12 @@ impl Spline {
     }
 
     /// The parameters of the points, from 0 on; of a closed curve the first point comes again.
-    pub(super) fn knots(&self) -> &[f64] {
+    pub(in super::super) fn knots(&self) -> &[f64] {
         &self.knots
     }
 
     /// The curve at parameter `t`, which goes on beyond the ends as the last cubics do.
-    pub(super) fn at(&self, t: f64) -> Jet {
+    pub(in super::super) fn at(&self, t: f64) -> Jet {
         let i = self.knots.partition_point(|&k| k <= t).clamp(1, self.knots.len() - 1) - 1;
         let h = self.knots[i + 1] - self.knots[i];
         let (a, b) = ((self.knots[i + 1] - t) / h, (t - self.knots[i]) / h);

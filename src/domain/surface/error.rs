@@ -15,6 +15,19 @@ pub enum SurfaceError {
         /// The most facets.
         most: usize,
     },
+    /// The model ends under a band, or turns away from it.
+    #[error(
+        "the model ends or turns away under the band, {off_mm:.2} mm beside its curve at ({:.2}, {:.2}, {:.2}) mm, {at_mm:.2} mm along it; use a narrower --width, or lead the curve elsewhere",
+        position.x, position.y, position.z
+    )]
+    Beyond {
+        /// A place of the flat band without the model under it.
+        position: DVec3,
+        /// Where along the curve.
+        at_mm: f64,
+        /// How far beside it.
+        off_mm: f64,
+    },
     /// A corner is not a place.
     #[error(
         "facet {facet} has a corner that is not a place within 2 m of the origin, which is as far as the numbers of mesh files are fine enough; move or scale the model, whose unit is the millimetre"

@@ -1,0 +1,135 @@
+//! `openwork surface`.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{ArgGroup, Args, ValueEnum};
+
+use super::args::PatternArguments;
+use super::progress::Progress;
+use super::run::{CliError, destinations, say_band, with_pattern};
+use super::values;
+use crate::job::{
+    BandBuilder, BandJob, Choice, ControlPoints, DEFAULT_TEMPERATURE, Height, Output, Route, SurfaceMode,
+    SurfaceOptions,
+};
+
+pub(super) const SURFACE_HELP: &str = "\
+Lengths take mm, cm, in, pt or px (96 to the inch); a bare number is millimetres. Models are in millimetres, z up, and keep
+their place. Drawings (SVG, DXF) are the pattern laid flat; a PNG needs --view to show the model.
+Counts are those of the pattern. A pattern that is carved through a wall in one component without holes leaves the
+model in one piece; each of its holes is a piece that comes off.
+
+Examples:
+  A bracelet for a vase: a part of its own that fits around it at half of its height
+    openwork surface vine.svg --mesh vase.stl --around 50% --width 14mm --components 1 -o ring.stl
+  The same pattern standing out from the vase, which gets a wall of 2 mm:
+    openwork surface vine.svg --mesh vase.stl --around 50% --width 14mm --mode emboss --shell 2mm -o vase.stl
+  Cut through the shell of an egg, along a curve through five points of it:
+    openwork surface vine.svg --mesh egg.obj --through \"20,0,10; 0,20,20; -20,0,30; 0,-20,20; 20,0,10\" \\
+      --width 9mm --mode carve --shell 1.6mm --components 1 --holes 0 -o lantern.stl -o lantern.png --view iso
+
+Exit codes: 0 done; 2 the exemplar, the model or an argument is wrong; 3 the constraints cannot be met; 4 a file failed
+verification and nothing was written; 1 a bug of ours.";
+
+#[derive(Debug, Args)]
+#[command(group = ArgGroup::new("route").required(true))]
+pub(super) struct SurfaceArguments {
+    /// The ornament to learn from (SVG)
+    pub(super) exemplar: PathBuf,
+    /// The model: an STL, a 3MF or an OBJ, in millimetres
+    #[arg(long, value_name = "FILE")]
+    pub(super) mesh: PathBuf,
+    /// Points of the model that the curve passes, x,y,z with semicolons between them; if the last is the first, it closes
+    #[arg(long, value_name = "POINTS", group = "route", value_parser = values::points, allow_hyphen_values = true)]
+    pub(super) through: Option<ControlPoints>,
+    /// A curve near the model: FILE.obj with a polyline, or FILE.csv with a row of x, y and z for each point; if the last is
+    /// the first, it closes
+    #[arg(long, value_name = "FILE", group = "route")]
+    pub(super) curve: Option<PathBuf>,
+    /// All the way round at a height: z in the coordinates of the model, as 30mm, or a part of its height, as 50%
+    #[arg(long, value_name = "HEIGHT", group = "route", value_parser = values::height, allow_hyphen_values = true)]
+    pub(super) around: Option<Height>,
+    /// How far points may be off the model; they are brought onto it
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "1mm", allow_hyphen_values = true)]
+    pub(super) tolerance: f64,
+    /// What becomes of the band
+    #[arg(long, value_enum, default_value_t)]
+    pub(super) mode: Mode,
+    /// Give the model a wall, inwards, that is so thick: open models need one, and closed ones are made hollow
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    pub(super) shell: Option<f64>,
+    /// Carve so deep, from the surface inwards, instead of through the wall of --shell
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    pub(super) depth: Option<f64>,
+    /// The pattern must go all the way round a closed curve
+    #[arg(long)]
+    pub(super) closed_pattern: bool,
+    #[command(flatten)]
+    pub(super) pattern: PatternArguments,
+}
+
+#[derive(Debug, Clone, Copy, Default, ValueEnum)]
+pub(super) enum Mode {
+    /// A part of its own, as thick as --thickness, that fits the model
+    #[default]
+    Band,
+    /// Standing out from the model by --thickness, in one piece with it
+    Emboss,
+    /// Cut out of the model: through the wall of --shell, or --depth deep. --min-feature is then for what is left between
+    /// cuts, and --min-gap for the cuts
+    Carve,
+}
+
+pub(super) fn run(arguments: &SurfaceArguments) -> Result<ExitCode, CliError> {
+    let (outputs, report_target) = destinations(&arguments.pattern)?;
+    let quiet = arguments.pattern.quiet;
+    let job = job(arguments)?;
+    job.check_outputs(&outputs, report_target.as_ref())?;
+    let progress = Progress::new(quiet, outputs.iter().map(Output::target).chain(&report_target));
+    let bands = job.run_all_for(&outputs, &mut |stage| progress.show(stage))?;
+    let report = bands[0].write(&outputs, report_target.as_ref(), &mut |stage| progress.show(stage))?;
+    drop(progress);
+    if !quiet {
+        say_band(&report);
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The job that the arguments ask for.
+pub(super) fn job(arguments: &SurfaceArguments) -> Result<BandJob, CliError> {
+    let options = SurfaceOptions {
+        model: arguments.mesh.clone(),
+        route: match (&arguments.through, &arguments.curve, arguments.around) {
+            (Some(points), ..) => through(points.clone()),
+            (_, Some(file), _) => Route::Curve(file.clone()),
+            (.., Some(height)) => Route::Around(height),
+            _ => unreachable!("the parser asks for one of them"),
+        },
+        mode: match arguments.mode {
+            Mode::Band => SurfaceMode::Band,
+            Mode::Emboss => SurfaceMode::Emboss,
+            Mode::Carve => SurfaceMode::Carve,
+        },
+        shell_mm: arguments.shell,
+        depth_mm: arguments.depth,
+        tolerance_mm: arguments.tolerance,
+    };
+    let builder = BandBuilder::on_model(&arguments.exemplar, options)
+        .closed_pattern(arguments.closed_pattern)
+        .counted(arguments.pattern.report.is_some());
+    let builder = match arguments.pattern.seed {
+        Some(seed) => builder.choice(Choice::Drawn { seed, count: 1, temperature: DEFAULT_TEMPERATURE }),
+        None => builder,
+    };
+    Ok(with_pattern(builder, &arguments.pattern)?.build()?)
+}
+
+/// Points whose last is their first are closed.
+fn through(ControlPoints(mut points): ControlPoints) -> Route {
+    let is_closed = points.len() > 3 && points.first() == points.last();
+    if is_closed {
+        points.pop();
+    }
+    Route::Through { points: ControlPoints(points), is_closed }
+}
