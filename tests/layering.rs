@@ -63,7 +63,7 @@ const LIBRARIES: [(&str, &[&str]); 18] = [
     ("i_triangle", &["src/fabricate/caps.rs"]),
     ("manifold_rust", &["src/fabricate/boolean.rs"]),
     ("spade", &["src/verify", "src/fit/links.rs", "src/fabricate/caps.rs", "src/fabricate/enforce/core.rs"]),
-    ("faer", &["src/fit/least_squares.rs"]),
+    ("faer", &["src/fit/least_squares.rs", "src/domain/surface/mean_value.rs"]),
     ("petgraph", &["src/reeb"]),
     ("usvg", &["src/exemplar", "src/verify", "src/analysis/overlay.rs"]),
     (
@@ -80,7 +80,7 @@ const LIBRARIES: [(&str, &[&str]); 18] = [
     ("tempfile", &["src/export/staged.rs"]),
     ("toml", &["src/fabricate/workshop.rs", "src/cli/preset.rs"]),
     ("zip", &["src/export/threemf.rs", "src/verify/threemf.rs"]),
-    ("robust", &["src/verify/crossings.rs"]),
+    ("robust", &["src/verify/crossings.rs", "src/domain/surface/exact.rs"]),
     ("clap", &["src/cli"]),
     ("indicatif", &["src/cli/progress.rs"]),
     ("ctrlc", &["src/cli/interrupt.rs"]),

@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
-use super::surface::{SURFACE_HELP, SurfaceArguments};
 use super::laser::LaserArgs;
 use super::make::MakeArgs;
 use super::picture::PictureArgs;
 use super::preset::PresetArgs;
 use super::print::PrintArgs;
 use super::shell::{CompletionsArguments, ManArguments};
+use super::surface::{SURFACE_HELP, SurfaceArguments};
 use super::values;
 use crate::domain::{CurveSpec, RectSize, Roll, Twist};
 use crate::job::{Drape, KeptRange, SlicingChoice, StitchMethod};

@@ -2,7 +2,9 @@
 
 use crate::domain::{CurveSpec, RectSize, Roll, parse_length_mm};
 use crate::fabricate::Bed;
-use crate::job::{ControlPoints, Drape, Height, KeptRange, SheetSize, SlicingChoice, StitchMethod, Wanted, WantedError};
+use crate::job::{
+    ControlPoints, Drape, Height, KeptRange, SheetSize, SlicingChoice, StitchMethod, Wanted, WantedError,
+};
 use crate::verify::Between;
 
 /// A length in millimetres: `12mm`, `1.2cm`, `0.5in`, `34pt`, `45px` or `12`.

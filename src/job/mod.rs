@@ -77,7 +77,6 @@ pub use certificate::{
 };
 pub use choice::{Choice, Chosen, DEFAULT_TEMPERATURE, choose};
 pub use cut::READ_SHARE;
-pub use surface::{ControlPoints, Ground, Height, Route, RouteError, SurfaceMode, SurfaceOptions};
 pub use drape::{Drape, DrapeError};
 pub use error::{JobError, OutlineFault};
 pub use extrude::{ExtrudeBridges, ExtrudeMaking, ExtrudeReport, extrude};
@@ -98,6 +97,7 @@ pub use report::{
 pub use several::write_numbered;
 pub use space::SpaceOptions;
 pub use stage::Stage;
+pub use surface::{ControlPoints, Ground, Height, Route, RouteError, SurfaceMode, SurfaceOptions};
 pub use ways::WayReport;
 
 pub use crate::export::{Curves, DxfVersion, LayerColours, View};

@@ -4,15 +4,13 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use glam::DVec3;
 
+use super::super::surface::MeshCurve;
 use super::error::SpaceError;
+use super::measured::Measured;
 use super::spline::{Jet, Spline};
+use super::traced::Traced;
 use super::twist::Twist;
 
-/// Steps of the table of lengths and frames for each point that a curve passes. More, and it takes longer; fewer, and frames
-/// are transported less exactly (each step errs by its fourth power, Wang et al. 2008).
-const STEPS: usize = 32;
-/// A curve that slows down to this part of the speed of its chords turns on the spot: a cusp.
-const CUSP: f64 = 0.02;
 /// Points nearer to each other than this are one, in millimetres.
 const SAME_MM: f64 = 1e-6;
 /// How far from the origin a point may be, in millimetres: farther off, the 32-bit floats of files are a tenth of a micrometre apart and more.
@@ -37,8 +35,10 @@ pub struct SpaceCurve {
 enum Kind {
     /// On a cylinder around the z axis: its radius, by how much it rises for each radian, and the angle at u = 0.
     Helix { radius: f64, rise: f64, start: f64 },
-    /// Through points.
-    Sampled(Sampled),
+    /// Through points, with frames that turn as little as they can.
+    Carried(Carried),
+    /// On a model, with its outside as the front.
+    Traced(Traced),
 }
 
 /// A curve at one place. `along`, `across` and `out` are unit vectors and a right-handed basis.
@@ -131,13 +131,13 @@ impl SpaceCurve {
         if let Some(i) = (0..pairs).find(is_twice) {
             return Err(SpaceError::Twice { number: i + 1, position: points[i] });
         }
-        let sampled = Sampled::new(Spline::through(points, is_closed))?;
-        let length = sampled.lengths[sampled.lengths.len() - 1];
+        let carried = Carried::new(Spline::through(points, is_closed))?;
+        let length = carried.measured.length();
         if length < MIN_LENGTH_MM {
             return Err(SpaceError::Points { found: points.len(), wanted });
         }
         let mut curve =
-            Self { kind: Kind::Sampled(sampled), length, is_closed, twist: Twist::default(), lift: 0.0 };
+            Self { kind: Kind::Carried(carried), length, is_closed, twist: Twist::default(), lift: 0.0 };
         if is_closed {
             // Carried all the way round, the frame comes back turned; that is undone evenly.
             let (start, end) = (curve.frame(0.0), curve.frame_unwrapped(length));
@@ -145,6 +145,18 @@ impl SpaceCurve {
             curve.twist = Twist::even(turned, length);
         }
         Ok(curve)
+    }
+
+    /// A smooth curve along one on a model, whose front is the outside of the model. It is the curve averaged over about `spacing_mm` and sampled as densely, so it
+    /// may leave the model by a little, and so are the normals, so that facets do not show where they are not much longer. A twist would lift the band off the model.
+    ///
+    /// # Errors
+    /// [`SpaceError::Spacing`] unless the spacing is a length that the curve has several of, [`SpaceError::Cusp`] where the curve turns on the spot, and
+    /// [`SpaceError::Edge`] where the model does.
+    pub fn on_surface(curve: &MeshCurve, spacing_mm: f64) -> Result<Self, SpaceError> {
+        let traced = Traced::new(curve, spacing_mm)?;
+        let (length, is_closed) = (traced.length(), curve.is_closed);
+        Ok(Self { kind: Kind::Traced(traced), length, is_closed, twist: Twist::default(), lift: 0.0 })
     }
 
     /// The same with frames that are turned about the direction of travel as well, counter-clockwise seen against it.
@@ -205,7 +217,8 @@ impl SpaceCurve {
                     curvature: -out * (radius / (speed * speed)),
                 }
             }
-            Kind::Sampled(sampled) => sampled.frame(u),
+            Kind::Carried(carried) => carried.frame(u),
+            Kind::Traced(traced) => traced.frame(u),
         };
         let frame = SpaceFrame { point: frame.point + DVec3::Z * self.lift, ..frame };
         let angle = self.twist.at(u, self.length);
@@ -218,66 +231,34 @@ impl SpaceCurve {
     }
 }
 
-/// A spline with its lengths and frames at many parameters.
+/// A spline with frames at many parameters.
 #[derive(Debug, Clone)]
-struct Sampled {
-    spline: Spline,
-    parameters: Vec<f64>,
-    lengths: Vec<f64>,
+struct Carried {
+    measured: Measured,
     across: Vec<DVec3>,
 }
 
-impl Sampled {
+impl Carried {
     fn new(spline: Spline) -> Result<Self, SpaceError> {
-        let mut parameters = vec![0.0];
-        for pair in spline.knots().windows(2) {
-            let part = |i: usize| pair[0] + (pair[1] - pair[0]) * i as f64 / STEPS as f64;
-            parameters.extend((1..=STEPS).map(part));
-        }
-        let mut lengths = vec![0.0];
-        for pair in parameters.windows(2) {
-            lengths.push(lengths[lengths.len() - 1] + length(&spline, pair[0], pair[1]));
-        }
-        // By the lengths of chords, the speed is about 1. A step in which it turns back goes through none.
-        let velocity = |i: usize| spline.at(parameters[i]).velocity;
-        let turns = |i: usize| i + 1 < parameters.len() && velocity(i).dot(velocity(i + 1)) < 0.0;
-        if let Some(i) = (0..parameters.len()).find(|&i| velocity(i).length() < CUSP || turns(i)) {
-            return Err(SpaceError::Cusp { position: spline.at(parameters[i]).point, at_mm: lengths[i] });
-        }
-        let start = spline.at(0.0).velocity.normalize();
+        let measured = Measured::new(spline)?;
+        let start = measured.jet(0).velocity.normalize();
         let up = if start.z.abs() < 0.99 { DVec3::Z } else { DVec3::Y };
         let mut across = vec![(up - start * up.dot(start)).normalize()];
-        for pair in parameters.windows(2) {
-            let next = transported(across[across.len() - 1], spline.at(pair[0]), spline.at(pair[1]));
+        for i in 1..measured.steps() {
+            let next = transported(across[i - 1], measured.jet(i - 1), measured.jet(i));
             across.push(next);
         }
-        Ok(Self { spline, parameters, lengths, across })
+        Ok(Self { measured, across })
     }
 
     fn frame(&self, u: f64) -> SpaceFrame {
-        let i = self.lengths.partition_point(|&s| s <= u).clamp(1, self.lengths.len() - 1) - 1;
-        let from = self.parameters[i];
-        let left = u - self.lengths[i];
-        let mut t = from + left / self.spline.at(from).velocity.length();
-        for _ in 0..4 {
-            t += (left - length(&self.spline, from, t)) / self.spline.at(t).velocity.length();
-        }
-        let jet = self.spline.at(t);
+        let (i, t) = self.measured.locate(u);
+        let jet = self.measured.at(t);
         let along = jet.velocity.normalize();
-        let carried = transported(self.across[i], self.spline.at(from), jet);
+        let carried = transported(self.across[i], self.measured.jet(i), jet);
         let across = (carried - along * carried.dot(along)).normalize();
-        let curvature = (jet.bend - along * jet.bend.dot(along)) / jet.velocity.length_squared();
-        SpaceFrame { point: jet.point, along, across, out: along.cross(across), curvature }
+        SpaceFrame { point: jet.point, along, across, out: along.cross(across), curvature: jet.curvature() }
     }
-}
-
-/// The length between two parameters, by Gauss and Legendre.
-fn length(spline: &Spline, from: f64, to: f64) -> f64 {
-    const NODES: [(f64, f64); 3] =
-        [(0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0), (-0.774_596_669_241_483_4, 5.0 / 9.0)];
-    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-    NODES.iter().map(|(x, weight)| weight * spline.at(middle + half * x).velocity.length()).sum::<f64>()
-        * half
 }
 
 /// A direction across the curve at `from`, carried to `to` by two reflections (Wang, Jüttler, Zheng and Liu 2008, table I).

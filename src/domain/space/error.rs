@@ -85,6 +85,27 @@ pub enum SpaceError {
         /// Where along the curve.
         at_mm: f64,
     },
+    /// A curve on a model cannot be sampled.
+    #[error(
+        "a curve of {length_mm:.3} mm on a model cannot be smoothed over {spacing_mm} mm; use more than 0 mm, and at most a twelfth of its length"
+    )]
+    Spacing {
+        /// Over what length it was to be smoothed.
+        spacing_mm: f64,
+        /// Its length.
+        length_mm: f64,
+    },
+    /// A model turns over under its curve.
+    #[error(
+        "the model turns over an edge at ({:.3}, {:.3}, {:.3}) mm, {at_mm:.2} mm along the curve, and a band cannot; move the curve away from it, or round the edge",
+        position.x, position.y, position.z
+    )]
+    Edge {
+        /// Where.
+        position: DVec3,
+        /// Where along the curve.
+        at_mm: f64,
+    },
     /// A closed curve that comes back turned.
     #[error("a twist of {by_deg} degrees does not close; along a closed curve it must be a multiple of 360")]
     Twist {

@@ -1,8 +1,8 @@
-//! Bands along curves in space: rings, helices, and curves through points.
+//! Bands along curves in space: rings, helices, curves through points, and curves on models.
 //!
 //! A band has coordinates (u, v) as in the plane, and w through its thickness. A curve carries a right-handed frame along
-//! ([`SpaceCurve`]): on a ring or a helix that of the cylinder, through points one that turns as little as it can, and a twist
-//! ([`Twist`]) if that is wanted. [`SpaceMap`] lays the band along it and refuses what folds or meets itself, with the place. Zhou 2014 §3.5.
+//! ([`SpaceCurve`]): on a ring or a helix that of the cylinder, through points one that turns as little as it can, on a model that of the
+//! model, and a twist ([`Twist`]) if that is wanted. [`SpaceMap`] lays the band along it and refuses what folds or meets itself, with the place. Zhou 2014 §3.5.
 //!
 //! Excluded: the pattern and its facets, which are made where solids are.
 
@@ -11,9 +11,11 @@ mod curve;
 mod error;
 mod facets;
 mod map;
+mod measured;
 mod relief;
 mod roll;
 mod spline;
+mod traced;
 mod twist;
 
 pub use curve::{SpaceCurve, SpaceFrame};

@@ -21,15 +21,30 @@ pub(in super::super) struct Jet {
     pub(in super::super) bend: DVec3,
 }
 
+impl Jet {
+    /// The curvature, as a vector towards the centre.
+    pub(super) fn curvature(&self) -> DVec3 {
+        let along = self.velocity.normalize();
+        (self.bend - along * self.bend.dot(along)) / self.velocity.length_squared()
+    }
+}
+
 impl Spline {
     /// The spline through `points`, of which no two in a row are the same; at least two, and three that close.
     pub(in super::super) fn through(points: &[DVec3], is_closed: bool) -> Self {
+        let n = points.len();
+        let steps = (0..n - usize::from(!is_closed)).map(|i| points[i].distance(points[(i + 1) % n]));
+        Self::by_steps(points, steps.collect(), is_closed)
+    }
+
+    /// The spline through `points`, which may be the same, with its knots `steps` apart, all more than 0; one for each two points in a row.
+    pub(super) fn by_steps(points: &[DVec3], steps: Vec<f64>, is_closed: bool) -> Self {
         let mut points = points.to_vec();
         if is_closed {
             points.push(points[0]);
         }
         let n = points.len() - 1;
-        let steps: Vec<f64> = (0..n).map(|i| points[i].distance(points[i + 1])).collect();
+        debug_assert_eq!(steps.len(), n);
         let mut knots = vec![0.0; n + 1];
         for i in 0..n {
             knots[i + 1] = knots[i] + steps[i];

@@ -7,10 +7,10 @@ use rustc_hash::FxHashMap;
 
 use super::mesh::Mesh;
 
-pub(super) type Facet = [[f32; 3]; 3];
+pub(in super::super) type Facet = [[f32; 3]; 3];
 
 /// A ball of twenty triangles, each cut into `frequency`² on the sphere, whose vertices are then moved by `shape`.
-pub(super) fn ball(frequency: u32, shape: impl Fn(DVec3) -> DVec3) -> Vec<Facet> {
+pub(in super::super) fn ball(frequency: u32, shape: impl Fn(DVec3) -> DVec3) -> Vec<Facet> {
     let golden = 0.5 * (1.0 + 5f64.sqrt());
     let corner = |i: u32| {
         let sign = |bit: u32| if i & bit == 0 { 1.0 } else { -1.0 };
@@ -44,7 +44,11 @@ pub(super) fn ball(frequency: u32, shape: impl Fn(DVec3) -> DVec3) -> Vec<Facet>
 }
 
 /// A grid of `counts` cells, open or closed in each direction, whose corners `shape` takes from the unit square.
-pub(super) fn grid(counts: [u32; 2], is_closed: [bool; 2], shape: impl Fn(DVec2) -> DVec3) -> Vec<Facet> {
+pub(in super::super) fn grid(
+    counts: [u32; 2],
+    is_closed: [bool; 2],
+    shape: impl Fn(DVec2) -> DVec3,
+) -> Vec<Facet> {
     let at = |i: u32, j: u32| {
         let wrap = |i: u32, axis: usize| if is_closed[axis] { i % counts[axis] } else { i };
         let place = |i: u32, axis: usize| f64::from(wrap(i, axis)) / f64::from(counts[axis]);
@@ -60,7 +64,7 @@ pub(super) fn grid(counts: [u32; 2], is_closed: [bool; 2], shape: impl Fn(DVec2)
 }
 
 /// A ring around the z axis, with one handle.
-pub(super) fn torus(counts: [u32; 2], radius: f64, tube: f64) -> Vec<Facet> {
+pub(in super::super) fn torus(counts: [u32; 2], radius: f64, tube: f64) -> Vec<Facet> {
     grid(counts, [true, true], |p| {
         let ((s, c), (ts, tc)) = ((TAU * p.x).sin_cos(), (TAU * p.y).sin_cos());
         DVec3::new((radius + tube * tc) * c, (radius + tube * tc) * s, tube * ts)
@@ -68,7 +72,7 @@ pub(super) fn torus(counts: [u32; 2], radius: f64, tube: f64) -> Vec<Facet> {
 }
 
 /// A tube around the z axis from z = 0 to `height`, open at both ends, with its radius at each height from 0 to 1.
-pub(super) fn tube(counts: [u32; 2], height: f64, radius: impl Fn(f64) -> f64) -> Vec<Facet> {
+pub(in super::super) fn tube(counts: [u32; 2], height: f64, radius: impl Fn(f64) -> f64) -> Vec<Facet> {
     grid(counts, [true, false], |p| {
         let (s, c) = (TAU * p.x).sin_cos();
         DVec3::new(radius(p.y) * c, radius(p.y) * s, height * p.y)
@@ -76,7 +80,7 @@ pub(super) fn tube(counts: [u32; 2], height: f64, radius: impl Fn(f64) -> f64) -
 }
 
 /// A ball of 30 mm radius, pressed and pulled by waves of `amounts`.
-pub(super) fn blob(frequency: u32, amounts: [f64; 3]) -> Mesh {
+pub(in super::super) fn blob(frequency: u32, amounts: [f64; 3]) -> Mesh {
     let facets = ball(frequency, |p| {
         let waves = amounts[0] * (3.0 * p.x + p.y).sin() + amounts[1] * (2.0 * p.y - 3.0 * p.z).cos();
         p * 30.0 * (1.0 + waves + amounts[2] * p.x * p.z)
@@ -85,7 +89,7 @@ pub(super) fn blob(frequency: u32, amounts: [f64; 3]) -> Mesh {
 }
 
 /// A model that needs no repair.
-pub(super) fn clean(facets: Vec<Facet>) -> Mesh {
+pub(in super::super) fn clean(facets: Vec<Facet>) -> Mesh {
     let (mesh, repairs) = Mesh::new(facets).expect("a surface");
     assert!(repairs.is_empty(), "{repairs:?}");
     mesh

@@ -17,7 +17,7 @@ use super::walk::{Left, Walk, in_plane};
 
 /// How much of the surface is laid flat beside the way: this part of the longest way between two points, one after the other until the curve stays in it, with at most so many
 /// vertices. More, and it takes longer (30,000 vertices take a second) and curves feel far corners of the model; less, and the curve leaves it.
-const ROOM: [(f64, usize); 3] = [(0.5, 12_000), (1.0, 25_000), (2.0, 60_000)];
+const ROOM: [(f64, usize); 3] = [(0.5, 30_000), (1.0, 60_000), (2.0, 120_000)];
 /// Room is never less than so many lengths of an edge.
 const LEAST_EDGES: f64 = 4.0;
 /// A sample of the spline about every so many millimetres of the way, so that chords are a micrometre off where it bends with a radius of 5 mm.

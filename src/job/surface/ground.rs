@@ -129,7 +129,8 @@ impl Ground {
         let beyond = missed_mm + BEYOND_MM;
         let thickness_mm = job.options.thickness_mm;
         let steepest = |relief: &Relief| -> Result<f64, SpaceError> {
-            let flat = SpaceMap::draped(curve.clone(), [-half, half], [0.0, beyond], Some(relief.clone()), 0.0)?;
+            let flat =
+                SpaceMap::draped(curve.clone(), [-half, half], [0.0, beyond], Some(relief.clone()), 0.0)?;
             Ok(flat.scales()[1])
         };
         let w_range = match (options.mode, options.depth_mm, options.shell_mm) {
@@ -176,9 +177,11 @@ fn check(options: &SurfaceOptions) -> Result<(), JobError> {
         return refuse(option, "it is no thickness", "use a length of more than 0, as 2mm");
     }
     match (options.mode, options.shell_mm, options.depth_mm) {
-        (SurfaceMode::Band, Some(_), _) => {
-            refuse("--shell", "a band is a part of its own, without the model", "use it with --mode emboss or carve")
-        }
+        (SurfaceMode::Band, Some(_), _) => refuse(
+            "--shell",
+            "a band is a part of its own, without the model",
+            "use it with --mode emboss or carve",
+        ),
         (SurfaceMode::Band | SurfaceMode::Emboss, _, Some(_)) => {
             refuse("--depth", "only what is carved has a depth", "use --thickness, or --mode carve")
         }

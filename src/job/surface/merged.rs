@@ -47,7 +47,8 @@ impl Ground {
                 (true, borders) => (1, 2 * part.genus + borders - 1),
                 (false, _) => (1, part.genus),
             };
-            let (shells, genus) = parts.iter().map(own).fold((0, 0), |sum, own| (sum.0 + own.0, sum.1 + own.1));
+            let (shells, genus) =
+                parts.iter().map(own).fold((0, 0), |sum, own| (sum.0 + own.0, sum.1 + own.1));
             return Ok(Some(MergedCounts { shells, genus }));
         }
         // The surface that is carved, with what its wall has if it came with one.

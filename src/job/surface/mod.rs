@@ -81,7 +81,9 @@ pub struct ControlPoints(pub Vec<DVec3>);
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum RouteError {
     /// A height is none.
-    #[error("'{text}' is no height; write a length above the model's origin, as 30mm, or a part of the model's height, as 50%")]
+    #[error(
+        "'{text}' is no height; write a length above the model's origin, as 30mm, or a part of the model's height, as 50%"
+    )]
     Height {
         /// What was given.
         text: String,
@@ -95,7 +97,9 @@ pub enum RouteError {
         source: LengthError,
     },
     /// Points are none.
-    #[error("'{point}' is no point; write x,y,z in millimetres for each, with semicolons between them, as \"30,0,10; 0,30,20\"")]
+    #[error(
+        "'{point}' is no point; write x,y,z in millimetres for each, with semicolons between them, as \"30,0,10; 0,30,20\""
+    )]
     Point {
         /// The point.
         point: String,
@@ -111,7 +115,9 @@ impl FromStr for Height {
             let percent = part.trim().parse::<f64>().ok().filter(|p| (0.0..=100.0).contains(p));
             return Ok(Self::Part(percent.ok_or_else(wrong)? / 100.0));
         }
-        parse_length_mm(text).map(Self::Mm).map_err(|source| RouteError::Length { text: text.to_owned(), source })
+        parse_length_mm(text)
+            .map(Self::Mm)
+            .map_err(|source| RouteError::Length { text: text.to_owned(), source })
     }
 }
 
