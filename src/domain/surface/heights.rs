@@ -69,6 +69,15 @@ impl MeshHeights {
         Self { tree: RTree::bulk_load(facets.map(|corners| Facet { corners }).collect()) }
     }
 
+    /// The mean length of the facets' edges in mm; 0 without facets.
+    pub fn edge_mm(&self) -> f64 {
+        let around = |facet: &Facet| {
+            (0..3).map(|i| facet.corners[i].distance(facet.corners[(i + 1) % 3])).sum::<f64>()
+        };
+        let lengths: Vec<f64> = self.tree.iter().map(around).collect();
+        lengths.iter().sum::<f64>() / (3.0 * lengths.len().max(1) as f64)
+    }
+
     /// How far the model is from `origin` along `direction`, a unit vector: negative if it is behind. Of several places within
     /// `reach_mm` it is the nearest where the outside of the model is ahead; `None` if there is none.
     pub fn height(&self, origin: DVec3, direction: DVec3, reach_mm: f64) -> Option<f64> {

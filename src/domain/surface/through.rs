@@ -24,6 +24,9 @@ const LEAST_EDGES: f64 = 4.0;
 const SAMPLE_MM: f64 = 0.2;
 /// Samples between two points, at least and at most.
 const SAMPLES: [f64; 2] = [8.0, 4000.0];
+/// So many guides are laid between two control points, where the model is no farther off than this part of the way between them.
+const GUIDES: usize = 3;
+const GUIDE_PART: f64 = 0.35;
 /// Places nearer to each other than this are one, in millimetres.
 const SAME_MM: f64 = 1e-6;
 /// What each corner of a facet counts at least for a control point, so that it is strictly inside. Its place moves by that part of the facet.
@@ -34,7 +37,7 @@ const MOST_OBLONG: f64 = 8.0;
 impl Mesh {
     /// A smooth curve through `control_mm`, each of which is first brought to the nearest place of the model.
     ///
-    /// It lies on the model; how it runs between the points depends on how the surface around them can be laid flat. It may meet itself.
+    /// It lies on the model, and runs between the points as the spline through them in space would, led onto it. It may meet itself.
     ///
     /// # Errors
     /// [`SurfaceError::Points`] for fewer than two points, or three of a closed curve, [`SurfaceError::Off`] for a point that is farther off than `tolerance_mm`,
@@ -54,7 +57,35 @@ impl Mesh {
         {
             return Err(SurfaceError::Twice { number: i + 1, position: places[i].point });
         }
-        self.curve_past(&places, is_closed)
+        self.curve_past(&self.guided(places, is_closed), is_closed)
+    }
+
+    /// Control points with guides between them: places of the model next to the spline through the points in space. The plane is stretched far from a
+    /// curve, and what is fair there need not be fair on the model; a spline in space is, but it has to be led onto it. Where it runs far
+    /// from the model, as through it, there are none.
+    fn guided(&self, places: Vec<Place>, is_closed: bool) -> Vec<Place> {
+        let n = places.len();
+        let points: Vec<DVec3> = places.iter().map(|place| place.point).collect();
+        if n < if is_closed { 3 } else { 2 } {
+            return places;
+        }
+        let spline = Spline::through(&points, is_closed);
+        let knots = spline.knots();
+        let guides: Vec<DVec3> = (0..knots.len() - 1)
+            .flat_map(|i| (1..=GUIDES).map(move |k| (i, k as f64 / (GUIDES + 1) as f64)))
+            .map(|(i, part)| spline.at(knots[i] + part * (knots[i + 1] - knots[i])).point)
+            .collect();
+        let far_mm = |i: usize| GUIDE_PART * points[i].distance(points[(i + 1) % n]);
+        let most_mm = (0..knots.len() - 1).map(far_mm).fold(0.0, f64::max);
+        let found = self.nearest(&guides, most_mm);
+        let mut guided: Vec<Place> = Vec::with_capacity(n + guides.len());
+        for (i, place) in places.into_iter().enumerate() {
+            guided.push(place);
+            let between = found.chunks_exact(GUIDES).nth(i).into_iter().flatten().flatten();
+            guided.extend(between.filter(|guide| guide.distance <= far_mm(i)).copied());
+        }
+        guided.dedup_by(|b, a| a.point.distance(b.point) < SAME_MM);
+        guided
     }
 
     /// A smooth curve along a polyline, brought to the model as control points are; of points that come to the same place one is passed.

@@ -7,13 +7,15 @@ use super::super::error::JobError;
 use super::super::points::read_points;
 use super::under::Under;
 use super::{Height, Route, SurfaceMode, SurfaceOptions};
-use crate::domain::{Mesh, MeshCurve, Relief, SpaceCurve, SpaceError, SpaceMap};
+use crate::domain::{Mesh, MeshCurve, MeshHeights, Relief, SpaceCurve, SpaceError, SpaceMap};
 use crate::verify;
 
 /// The largest model that is read, in bytes: twenty million facets.
 const MAX_BYTES: u64 = 1 << 30;
 /// The curve is smoothed over so many edges of the model, as its corners are none of the band's.
 const SMOOTHED_EDGES: f64 = 1.5;
+/// Facets so near to the curve are beside it, in millimetres.
+const BESIDE_MM: f64 = 0.1;
 /// The least and the greatest distance between the points that carry the smooth curve, in millimetres.
 const SPACING_MM: [f64; 2] = [0.75, 6.0];
 /// How far from the flat band the model is looked for, as a part of half of the width, and beyond.
@@ -58,8 +60,9 @@ impl Ground {
             return Err(refuse("--mesh", found, "simplify the model"));
         }
         let bytes = std::fs::read(&options.model).map_err(unreadable)?;
-        let facets = verify::read_facets(&bytes)
-            .map_err(|error| JobError::Unjudged { file: options.model.clone(), error })?;
+        let facets = verify::read_facets(&bytes).map_err(|error| {
+            refuse("--mesh", format!("{}: {error}", file()), "name an STL, a 3MF or an OBJ of triangles")
+        })?;
         let (mesh, repairs) = Mesh::new(facets)?;
         if options.mode != SurfaceMode::Band && options.shell_mm.is_none() {
             mesh.ensure_closed()?;
@@ -75,9 +78,9 @@ impl Ground {
                 mesh.along(&read.points, read.is_closed, options.tolerance_mm)?
             }
         };
-        let pieces = on_mesh.points_mm.len() as f64;
         let length_mm = on_mesh.length_mm();
-        let spacing_mm = (SMOOTHED_EDGES * length_mm / pieces).clamp(SPACING_MM[0], SPACING_MM[1]);
+        let beside = MeshHeights::new(&mesh, on_mesh.points_mm.iter().copied(), BESIDE_MM);
+        let spacing_mm = (SMOOTHED_EDGES * beside.edge_mm()).clamp(SPACING_MM[0], SPACING_MM[1]);
         let curve = SpaceCurve::on_surface(&on_mesh, spacing_mm.min(length_mm / 12.0))?;
         let options = options.clone();
         let is_through = OnceLock::new();
