@@ -2,8 +2,8 @@
 //!
 //!     cargo run --example make_models [FOLDER]
 //!
-//! Both are turned on a lathe: an outline is turned about the z axis in rings a step apart, with as many corners in each as it takes for triangles that
-//! are nearly equilateral.
+//! Both are turned on a lathe: an outline is turned about the z axis in rings a step apart, with as many corners in
+//! each as it takes for triangles that are nearly equilateral.
 
 use std::error::Error;
 use std::f64::consts::{PI, TAU};

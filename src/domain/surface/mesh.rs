@@ -10,8 +10,9 @@ use super::soup::Soup;
 
 /// A surface of triangles, closed or with borders, of one part or several, in millimetres.
 ///
-/// Each edge has one triangle or two, each vertex one fan of them, and neighbours agree in their orientation: seen from
-/// outside, corners are counter-clockwise. Closed parts have their inside inside; which side of an open part is its outside is what the file says.
+/// Each edge has one triangle or two, each vertex one fan of them, and neighbours agree in their orientation: seen
+/// from outside, corners are counter-clockwise. Closed parts have their inside inside; which side of an open part
+/// is its outside is what the file says.
 #[derive(Debug, Clone)]
 pub struct Mesh {
     vertices: Vec<DVec3>,
@@ -36,14 +37,17 @@ pub struct MeshPart {
 }
 
 impl Mesh {
-    /// The surface of `facets`, whose corners are counter-clockwise seen from outside, and what had to be mended for it to be one.
+    /// The surface of `facets`, whose corners are counter-clockwise seen from outside, and what had to be mended
+    /// for it to be one.
     ///
-    /// Equal corners are welded. Repeated facets and facets without area are taken out, facets that face the wrong way are turned, parts that touch
-    /// in a corner are parted there, and closed parts that are inside out are turned.
+    /// Equal corners are welded. Repeated facets and facets without area are taken out, facets that face the wrong
+    /// way are turned, parts that touch in a corner are parted there, and closed parts that are inside out are
+    /// turned.
     ///
     /// # Errors
-    /// [`SurfaceError::Empty`], [`SurfaceError::TooMany`], [`SurfaceError::Coordinates`] for what is no model, [`SurfaceError::Crowded`] for an edge of
-    /// three facets, [`SurfaceError::Flat`] for a facet that cannot be mended, and [`SurfaceError::OneSided`].
+    /// [`SurfaceError::Empty`], [`SurfaceError::TooMany`], [`SurfaceError::Coordinates`] for what is no model,
+    /// [`SurfaceError::Crowded`] for an edge of three facets, [`SurfaceError::Flat`] for a facet that cannot be
+    /// mended, and [`SurfaceError::OneSided`].
     pub fn new(
         facets: impl IntoIterator<Item = [[f32; 3]; 3]>,
     ) -> Result<(Self, Vec<MeshRepair>), SurfaceError> {
@@ -85,7 +89,8 @@ impl Mesh {
         self.triangles.iter().map(|t| t.map(|v| self.vertices[v as usize].as_vec3().to_array()))
     }
 
-    /// A unit vector at each vertex that points outside: the mean of the normals of the triangles there, by their angles.
+    /// A unit vector at each vertex that points outside: the mean of the normals of the triangles there, by their
+    /// angles.
     pub fn vertex_normals(&self) -> &[DVec3] {
         &self.normals
     }
@@ -208,7 +213,8 @@ impl Mesh {
         (sum(&self.vertices), self.outside(facet, sum(&self.normals)))
     }
 
-    /// The place on the edge of a side, from 0 at its begin to 1 at its end, and the outside there; the same from both sides.
+    /// The place on the edge of a side, from 0 at its begin to 1 at its end, and the outside there; the same from
+    /// both sides.
     pub(super) fn place_on(&self, side: u32, part: f64) -> (DVec3, DVec3) {
         let (a, b, part) = match self.from(side) < self.to(side) {
             true => (self.from(side), self.to(side), part),
@@ -226,8 +232,8 @@ impl Mesh {
     }
 }
 
-/// The mean of the normals of the triangles at each vertex, by their angles there (Thürmer and Wüthrich 1998): it does not depend on
-/// how a face is cut into triangles.
+/// The mean of the normals of the triangles at each vertex, by their angles there (Thürmer and Wüthrich 1998): it
+/// does not depend on how a face is cut into triangles.
 fn vertex_normals(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Vec<DVec3> {
     let mut sums = vec![DVec3::ZERO; vertices.len()];
     for triangle in triangles {

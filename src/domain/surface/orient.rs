@@ -8,7 +8,8 @@ use super::error::SurfaceError;
 use super::repair::{RepairKind, Repairs};
 use super::sides::{NONE, from, next, previous, to, triangle_of};
 
-/// Turns triangles so that neighbours agree, the lesser number in each part; gives the part of each triangle and the number of parts.
+/// Turns triangles so that neighbours agree, the lesser number in each part; gives the part of each triangle and
+/// the number of parts.
 pub(super) fn agree(
     vertices: &[DVec3],
     triangles: &mut [[u32; 3]],
@@ -122,8 +123,8 @@ pub(super) fn part_fans(
     }
 }
 
-/// Turns closed parts with their inside out: those that no other part contains, with all that they contain. A hollow in a part stays
-/// one. Parts with a border stay as they are.
+/// Turns closed parts with their inside out: those that no other part contains, with all that they contain. A
+/// hollow in a part stays one. Parts with a border stay as they are.
 pub(super) fn outside_out(
     vertices: &[DVec3],
     triangles: &mut [[u32; 3]],
@@ -200,15 +201,17 @@ mod tests {
 
     #[test]
     fn parts_that_touch_are_parted() {
-        let cone = |up: f64| ball(2, move |p| DVec3::new(p.x, p.y, up * (1.0 - p.z)) * 10.0);
-        // Two balls, one upside down, whose tops are one place.
-        let tips = ball(2, |p| p).iter().flatten().map(|c| c[2]).fold(f32::MIN, f32::max);
-        let shift = 10.0 * (1.0 - f64::from(tips));
-        let above = cone(1.0).into_iter().map(|f| f.map(|[x, y, z]| [x, y, z - shift as f32]));
-        let below = cone(-1.0).into_iter().map(|f| reversed(f).map(|[x, y, z]| [x, y, z + shift as f32]));
-        let (mesh, repairs) = told(above.chain(below).collect());
-        let parted = repairs.iter().find(|(kind, _)| *kind == RepairKind::Parted);
-        assert!(parted.is_some() && mesh.parts().len() == 2, "{repairs:?}");
+        // Two pyramids, one upside down, whose tops are one place.
+        let base = [[2.0f32, 0.0], [-1.0, 2.0], [-1.0, -2.0]];
+        let pyramid = |z: f32| {
+            let [a, b, c] = base.map(|[x, y]| [x, y, z]);
+            let top = [0.0; 3];
+            [[a, b, top], [b, c, top], [c, a, top], [c, b, a]]
+        };
+        let below = pyramid(4.0).map(reversed);
+        let (mesh, repairs) = told([pyramid(-4.0), below].concat());
+        assert_eq!(repairs, [(RepairKind::Parted, 1)]);
+        assert_eq!((mesh.vertices_mm().len(), mesh.parts().len()), (8, 2));
         assert!(mesh.parts().iter().all(|part| part.genus == 0 && part.borders == 0));
     }
 
