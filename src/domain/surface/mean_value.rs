@@ -188,6 +188,20 @@ mod tests {
         }
     }
 
+    #[test]
+    fn holes_are_laid_flat_too() {
+        // A bent sheet with three holes, each closed by a fan.
+        let sheet = grid([12, 12], [false; 2], |p| (40.0 * p).extend(20.0 * p.x * p.y * p.y));
+        let is_hole = |cell: usize| [27, 28, 39, 66, 101].contains(&cell);
+        let kept = sheet.into_iter().enumerate().filter(|(i, _)| !is_hole(i / 2)).map(|(_, facet)| facet);
+        let mesh = clean(kept.collect());
+        let all: Vec<u32> = (0..mesh.vertices_mm().len() as u32).collect();
+        let disc = Disc::around(&mesh, &all).unwrap();
+        assert_eq!(disc.middles.len(), 3);
+        let flat = Flat::of(&disc, DVec2::new(2.0, 1.0), 5).unwrap();
+        assert!(areas(&disc, &flat).iter().all(|&area| area > 0.0));
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
         #[test]

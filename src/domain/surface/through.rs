@@ -37,9 +37,9 @@ impl Mesh {
     /// flat. It may meet itself.
     ///
     /// # Errors
-    /// [`SurfaceError::Points`] for fewer than two points, or three of a closed curve, [`SurfaceError::Off`] for a
-    /// point that is farther off than `tolerance_mm`, [`SurfaceError::Twice`], [`SurfaceError::Parts`],
-    /// [`SurfaceError::Handle`], [`SurfaceError::Leaves`] and [`SurfaceError::Flipped`].
+    /// [`SurfaceError::Control`], [`SurfaceError::Points`] for fewer than two points, or three of a closed curve,
+    /// [`SurfaceError::Off`] for a point that is farther off than `tolerance_mm`, [`SurfaceError::Twice`] for two in a row
+    /// at one place, [`SurfaceError::Parts`], [`SurfaceError::Handle`], [`SurfaceError::Coarse`], [`SurfaceError::Leaves`] and [`SurfaceError::Flipped`].
     pub fn through(
         &self,
         control_mm: &[DVec3],
@@ -81,6 +81,9 @@ impl Mesh {
     }
 
     fn places(&self, points: &[DVec3], tolerance_mm: f64) -> Result<Vec<Place>, SurfaceError> {
+        if let Some(i) = points.iter().position(|p| !p.is_finite()) {
+            return Err(SurfaceError::Control { number: i + 1 });
+        }
         let nearest = self.nearest(points, tolerance_mm);
         let place = |(i, found): (usize, Option<Place>)| {
             found.ok_or_else(|| {
@@ -136,8 +139,14 @@ impl Mesh {
             let inner: Vec<u32> = near[..count].iter().map(|&(v, _)| v).collect();
             match Disc::around(self, &inner) {
                 Ok(disc) => return Ok(disc),
-                // The way alone is no disc.
-                Err(_) if reach == 0.0 => return Err(SurfaceError::Handle { position: self.met(&vertices) }),
+                // Nor is the way alone.
+                Err(NoDisc::Closed) if reach == 0.0 => {
+                    let position = self.vertices_mm()[vertices[0] as usize];
+                    return Err(SurfaceError::Coarse { position });
+                }
+                Err(NoDisc::Handle) if reach == 0.0 => {
+                    return Err(SurfaceError::Handle { position: self.met(&vertices) });
+                }
                 // A little less leaves a cap, or the far side of a handle.
                 Err(NoDisc::Closed | NoDisc::Handle) => {
                     reach = if count <= vertices.len() { 0.0 } else { 0.8 * reach };
@@ -239,6 +248,14 @@ mod tests {
             mesh.through(&points[..2], true, 2.0),
             Err(SurfaceError::Points { found: 2, wanted: 3 })
         ));
+        let unknown = mesh.through(&[DVec3::X, DVec3::NAN], false, 2.0);
+        assert_eq!(unknown.unwrap_err(), SurfaceError::Control { number: 2 });
+        // Of four triangles, none is beside the curve.
+        let corners = [[0.0f32, 0.0, 0.0], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0], [0.0, 0.0, 9.0]];
+        let tetrahedron = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]].map(|t| t.map(|v: usize| corners[v]));
+        let tips = corners.map(|[x, y, z]| DVec3::new(x.into(), y.into(), z.into()));
+        let coarse = clean(tetrahedron.to_vec()).through(&tips, true, 1.0).err();
+        assert!(matches!(coarse, Some(SurfaceError::Coarse { .. })), "{coarse:?}");
         assert!(matches!(mesh.through(&[], false, 2.0), Err(SurfaceError::Points { found: 0, wanted: 2 })));
         let twice = [points[0], points[1], points[1], points[2]];
         assert!(matches!(mesh.through(&twice, true, 2.0), Err(SurfaceError::Twice { number: 2, .. })));
