@@ -11,8 +11,9 @@
 //! orientation, so components and holes of what it maps stay the same; [`BandMap::map_contour`] stays within
 //! the chord error of that map.
 //!
-//! Curves in space carry frames ([`SpaceCurve`]), and a [`SpaceMap`] lays a thick band along them. Curves on models ([`MeshCurve`]) lie on a
-//! surface of triangles ([`Mesh`]), and give such a curve with the outside of the model as its front.
+//! Curves in space carry frames ([`SpaceCurve`]), and a [`SpaceMap`] lays a thick band along them. On models,
+//! which are surfaces of triangles ([`Mesh`]), lie curves ([`MeshCurve`]) that give such a curve, with the outside of
+//! the model as its front.
 //!
 //! Excluded: reading files (a [`CurveSpec`] only names one), and the minimum feature after
 //! the map, which is measured where the part is made.

@@ -147,12 +147,13 @@ impl SpaceCurve {
         Ok(curve)
     }
 
-    /// A smooth curve along one on a model, whose front is the outside of the model. It is the curve averaged over about `spacing_mm` and sampled as densely, so it
-    /// may leave the model by a little, and so are the normals, so that facets do not show where they are not much longer. A twist would lift the band off the model.
+    /// A smooth curve along one on a model, whose front is the outside of the model. It is the curve averaged over about
+    /// `spacing_mm` and sampled as densely, so it may leave the model by a little; so are its normals, and facets that
+    /// are not much longer than that do not show. A twist would lift the band off the model.
     ///
     /// # Errors
-    /// [`SpaceError::Spacing`] unless the spacing is a length that the curve has several of, [`SpaceError::Cusp`] where the curve turns on the spot, and
-    /// [`SpaceError::Edge`] where the model does.
+    /// [`SpaceError::Spacing`] unless the curve has at least a dozen spacings, [`SpaceError::Cusp`] where it turns on the
+    /// spot, and [`SpaceError::Edge`] where the model does.
     pub fn on_surface(curve: &MeshCurve, spacing_mm: f64) -> Result<Self, SpaceError> {
         let traced = Traced::new(curve, spacing_mm)?;
         let (length, is_closed) = (traced.length(), curve.is_closed);

@@ -5,8 +5,8 @@
 use super::error::SpaceError;
 use super::spline::{Jet, Spline};
 
-/// Steps of the table of lengths for each point that a curve passes. More, and it takes longer; fewer, and frames that are carried from
-/// step to step are less exact (each step errs by its fourth power, Wang et al. 2008).
+/// Steps of the table of lengths for each point that a curve passes. More, and it takes longer; fewer, and frames
+/// that are carried from step to step are less exact (each step errs by its fourth power, Wang et al. 2008).
 const STEPS: usize = 32;
 /// A curve that slows down to this part of the speed of its chords turns on the spot: a cusp.
 const CUSP: f64 = 0.02;

@@ -37,8 +37,9 @@ impl Spline {
         Self::by_steps(points, steps.collect(), is_closed)
     }
 
-    /// The spline through `points`, which may be the same, with its knots `steps` apart, all more than 0; one for each two points in a row.
-    pub(super) fn by_steps(points: &[DVec3], steps: Vec<f64>, is_closed: bool) -> Self {
+    /// The spline through `points`, which may be the same, with its knots `steps` apart, all more than 0; one for each two
+    /// points in a row.
+    pub(in super::super) fn by_steps(points: &[DVec3], steps: Vec<f64>, is_closed: bool) -> Self {
         let mut points = points.to_vec();
         if is_closed {
             points.push(points[0]);

@@ -1,8 +1,10 @@
 //! Curves on models, with smooth frames.
 //!
-//! The polyline on the model has a corner at every edge, and normals that follow the facets. Both are averaged over a little of the curve and sampled evenly, and a
-//! spline goes through the samples: the base curve, and the *normal trace*, which is projected on the unit sphere. The trace made perpendicular to the curve is the
-//! front of the band. Zhou 2014 §6.3, which takes Bézier pieces with forward differences as tangents; a spline with a continuous second derivative has no kinks.
+//! The polyline on the model has a corner at every edge, and normals that follow the facets. Both are averaged over
+//! a little of the curve and sampled evenly, and a spline goes through the samples: the base curve, and the *normal
+//! trace*, which is projected on the unit sphere. The trace made perpendicular to the curve is the front of the
+//! band. Zhou 2014 §6.3, which takes Bézier pieces with forward differences as tangents; a spline with a continuous
+//! second derivative has no kinks.
 
 use glam::DVec3;
 
@@ -18,8 +20,9 @@ const PARTS: i32 = 8;
 const LEAST_SAMPLES: f64 = 12.0;
 /// The most samples: ten metres at half a millimetre.
 const MOST_SAMPLES: f64 = 20_000.0;
-/// Normals of neighbouring samples turn by no more than this, as a cosine, and are no nearer to the direction of travel than this, as a sine. Less, and the
-/// trace between two samples may pass the centre of the sphere, from where it has no direction.
+/// Normals of neighbouring samples turn by no more than this, as a cosine, and are no nearer to the direction of
+/// travel than this, as a sine. Less, and the trace between two samples may pass the centre of the sphere, from
+/// where it has no direction.
 const LEAST: f64 = 0.2;
 
 /// A base curve with the trace of its normals, by the same parameter.
@@ -113,7 +116,8 @@ impl<'a> Polyline<'a> {
         (between(&self.curve.points_mm), between(&self.curve.normals))
     }
 
-    /// The mean place and normal around a length, the nearer the more; at the ends of an open curve only what is as far on both sides.
+    /// The mean place and normal around a length, the nearer the more; at the ends of an open curve only what is as
+    /// far on both sides.
     fn average(&self, u: f64, reach: f64) -> (DVec3, DVec3) {
         let reach = match self.curve.is_closed {
             true => reach,
@@ -195,7 +199,8 @@ mod tests {
             let refused = SpaceCurve::on_surface(ring, spacing).unwrap_err();
             assert!(matches!(refused, SpaceError::Spacing { .. }), "{spacing}: {refused}");
         }
-        // A blade: two sheets that meet in a sharp edge, over which the normal goes by the shortest way or the curve turns back.
+        // A blade: two sheets that meet in a sharp edge, over which the normal goes by the shortest way or the
+        // curve turns back.
         let blade: Vec<Facet> = grid([40, 8], [true, false], |p| {
             let (s, c) = (TAU * p.x).sin_cos();
             DVec3::new(30.0 * c, 0.05 * s, 20.0 * p.y)
@@ -235,7 +240,8 @@ mod tests {
                 let chord = frame.point.distance(before.point) / step;
                 let (bend, turn) = (before.along.distance(frame.along), before.out.distance(frame.out));
                 prop_assert!(chord < 1.02 && (chord > 0.5 || bend > 1.0), "at {i}: {chord} {bend}");
-                // About the curve it turns as the model does under it: here less than a third of a radian in each millimetre.
+                // About the curve it turns as the model does under it: here less than a third of a radian in each
+                // millimetre.
                 prop_assert!(turn <= 2.0 * bend + 0.3 * step, "at {i}: {turn} {bend} {step}");
                 before = frame;
             }

@@ -1,7 +1,7 @@
 //! The nearest place of a model: of one triangle, and of all, for many points at once.
 //!
-//! The points are put in a tree rather than the facets: there are few of them, so a million facets need no more than a look each. Excluded: a
-//! tree of the whole model, which takes longer to make than all that is asked of it.
+//! The points are put in a tree rather than the facets: there are few of them, so a million facets need no more
+//! than a look each. Excluded: a tree of the whole model, which takes longer to make than all that is asked of it.
 
 use glam::DVec3;
 use rstar::primitives::GeomWithData;

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-/// Points nearer to each other than this are one, in millimetres: a curve that passes a vertex crosses several edges there.
+/// Points nearer to each other than this are one, in millimetres: a curve that passes a vertex crosses several
+/// edges there.
 const SAME_MM: f64 = 1e-9;
 
 /// A polyline on a model: each of its pieces is in one triangle, as wherever it crosses an edge it has a point.

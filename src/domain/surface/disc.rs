@@ -1,8 +1,10 @@
 //! The part of a model around a way, made into a disc.
 //!
-//! All triangles at the nearest vertices of the way, so many that there is room beside it, are a piece of the surface with some borders. The longest border becomes that
-//! of the disc; the others, such as the far side of a band round a vase, are closed by fans of triangles around a middle. So a closed curve may go round a vase or a handle, and only
-//! a piece that itself has a handle is no disc. Excluded: the plane, in which the disc is laid elsewhere.
+//! All triangles at the nearest vertices of the way, so many that there is room beside it, are a piece of the
+//! surface with some borders. The longest border becomes that of the disc; the others, such as the far side of a
+//! band round a vase, are closed by fans of triangles around a middle. So a closed curve may go round a vase or a
+//! handle, and only a piece that itself has a handle is no disc. Excluded: the plane, in which the disc is laid
+//! elsewhere.
 
 use glam::DVec3;
 
@@ -20,6 +22,10 @@ pub(super) struct Disc {
     pub(super) twins: Vec<u32>,
     /// The vertices along its border, with the disc on the left.
     pub(super) border: Vec<u32>,
+    /// The vertices in the middle of the fans that close its other borders.
+    pub(super) middles: Vec<u32>,
+    /// The vertex of the disc that each of the model is, or [`NONE`].
+    numbers: Vec<u32>,
 }
 
 /// Why triangles are no disc.
@@ -32,6 +38,11 @@ pub(super) enum NoDisc {
 }
 
 impl Disc {
+    /// The vertex of the disc that one of the model is.
+    pub(super) fn number(&self, vertex: u32) -> Option<u32> {
+        Some(self.numbers[vertex as usize]).filter(|&number| number != NONE)
+    }
+
     /// The disc of all triangles at `inner` vertices, which hang together.
     pub(super) fn around(mesh: &Mesh, inner: &[u32]) -> Result<Self, NoDisc> {
         let facets = facets_around(mesh, inner);
@@ -74,14 +85,16 @@ impl Disc {
             |border: &[u32]| -> Vec<u32> { border.iter().map(|&side| from(&triangles, side)).collect() };
         let border = loop_vertices(&borders.remove(longest));
         let holes: Vec<Vec<u32>> = borders.iter().map(|hole| loop_vertices(hole)).collect();
+        let mut middles = Vec::new();
         for hole in holes {
             let middle = hole.iter().map(|&v| vertices[v as usize]).sum::<DVec3>() / hole.len() as f64;
+            middles.push(vertices.len() as u32);
             vertices.push(middle);
             let next = hole.iter().skip(1).chain(hole.first());
-            triangles.extend(hole.iter().zip(next).map(|(&a, &b)| [b, a, vertices.len() as u32 - 1]));
+            triangles.extend(hole.iter().zip(next).map(|(&a, &b)| [b, a, middles[middles.len() - 1]]));
         }
         let twins = paired(&triangles, vertices.len());
-        Ok(Self { vertices, triangles, facets, twins, border })
+        Ok(Self { vertices, triangles, facets, twins, border, middles, numbers: local })
     }
 }
 
@@ -164,7 +177,7 @@ mod tests {
             // Several pieces, joined by a way.
             let places: Vec<_> = seeds.iter().map(|&s| mesh.nearest_anywhere(mesh.vertices_mm()[s]).unwrap()).collect();
             let route = mesh.route(&places, false).unwrap();
-            let near: Vec<u32> = mesh.within(&route.vertices, reach, usize::MAX).into_iter().map(|(v, _)| v).collect();
+            let near: Vec<u32> = mesh.within(&route.vertices(), reach, usize::MAX).into_iter().map(|(v, _)| v).collect();
             match Disc::around(&mesh, &near) {
                 Ok(disc) => prop_assert!(is_disc(&disc)),
                 Err(why) => prop_assert_eq!(why, NoDisc::Closed),

@@ -98,6 +98,12 @@ pub enum SurfaceError {
         /// How many there must be.
         wanted: usize,
     },
+    /// A control point is not a place.
+    #[error("point {number} has a coordinate that is not a number; write x, y and z in millimetres")]
+    Control {
+        /// Which, from 1.
+        number: usize,
+    },
     /// A control point is not on the surface.
     #[error(
         "point {number} is {distance_mm:.3} mm off the surface, and at most {tolerance_mm} mm are allowed; the nearest place of the model is ({:.3}, {:.3}, {:.3}) mm",
@@ -139,6 +145,15 @@ pub enum SurfaceError {
     )]
     Handle {
         /// Where.
+        position: DVec3,
+    },
+    /// The curve is all over the model.
+    #[error(
+        "the facets around the curve near ({:.3}, {:.3}, {:.3}) mm are all of the model, so that it cannot be cut open beside it; divide its facets into smaller ones (remesh)",
+        position.x, position.y, position.z
+    )]
+    Coarse {
+        /// Where it begins.
         position: DVec3,
     },
     /// The curve leaves the model.

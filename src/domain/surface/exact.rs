@@ -5,7 +5,8 @@
 use glam::{DVec2, DVec3};
 use robust::{Coord, Coord3D};
 
-/// Positive if a, b and c turn to the left, negative to the right, and 0 only if they are in one line. An approximation of twice the area.
+/// Positive if a, b and c turn to the left, negative to the right, and 0 only if they are in one line. An
+/// approximation of twice the area.
 pub(super) fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     let coord = |p: DVec2| Coord { x: p.x, y: p.y };
     robust::orient2d(coord(a), coord(b), coord(c))

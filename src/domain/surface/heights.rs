@@ -1,7 +1,8 @@
 //! How far a model is from places near it, along given directions.
 //!
-//! Whether a line passes a triangle is decided by exact signs, one for each side, and a line through a side counts for both of its triangles: no line slips
-//! through an edge or a vertex. Excluded: facets far from the points that were named.
+//! Whether a line passes a triangle is decided by exact signs, one for each side, and a line through a side counts
+//! for both of its triangles: no line slips through an edge or a vertex. Excluded: facets far from the points that
+//! were named.
 
 use glam::DVec3;
 use rstar::{AABB, RTree, RTreeObject, SelectionFunction};
@@ -78,10 +79,11 @@ impl MeshHeights {
         lengths.iter().sum::<f64>() / (3.0 * lengths.len().max(1) as f64)
     }
 
-    /// How far the model is from `origin` along `direction`, a unit vector: negative if it is behind. Of several places within
-    /// `reach_mm` it is the nearest where the outside of the model is ahead; `None` if there is none.
+    /// How far the model is from `origin` along `direction`, a unit vector: negative if it is behind. Of several
+    /// places within `reach_mm` it is the nearest where the outside of the model is ahead; `None` if there is none.
     pub fn height(&self, origin: DVec3, direction: DVec3, reach_mm: f64) -> Option<f64> {
-        // A direction of zero along an axis divides to infinity, which is right for what is between planes of that axis.
+        // A direction of zero along an axis divides to infinity, which is right for what is between planes of that
+        // axis.
         let line = Line { origin, inverse: direction.recip(), reach: reach_mm };
         let ahead = origin + direction;
         let mut best: Option<f64> = None;

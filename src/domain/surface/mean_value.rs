@@ -1,8 +1,9 @@
 //! A disc of triangles laid flat.
 //!
-//! Its border goes on an ellipse, by length; each vertex inside becomes a mean of its neighbours with the weights of Floater 2003 (mean value
-//! coordinates), which are positive. By Tutte's theorem (in Floater's form, for convex combinations) no triangle turns over, whatever the disc looks like. That the numbers
-//! agree is checked exactly. This is the adapter to the solver. Zhou 2014 §6.3.
+//! Its border goes on an ellipse, by length; each vertex inside becomes a mean of its neighbours with the weights
+//! of Floater 2003 (mean value coordinates), which are positive. By Tutte's theorem (in Floater's form, for convex
+//! combinations) no triangle turns over, whatever the disc looks like. That the numbers agree is checked exactly.
+//! This is the adapter to the solver. Zhou 2014 §6.3.
 
 use faer::linalg::solvers::Solve;
 use faer::prelude::*;
@@ -14,7 +15,8 @@ use super::disc::Disc;
 use super::exact::turn;
 use super::sides::NONE;
 
-/// The least part of all weights of a vertex that one has. Less, and a vertex at the tip of a sliver depends on one neighbour alone, as far as numbers can tell.
+/// The least part of all weights of a vertex that one has. Less, and a vertex at the tip of a sliver depends on one
+/// neighbour alone, as far as numbers can tell.
 const LEAST_WEIGHT: f64 = 1e-7;
 
 /// Where the vertices of a disc are in the plane, with its border on an ellipse around the origin, counter-clockwise.
@@ -24,7 +26,8 @@ pub(super) struct Flat {
 }
 
 impl Flat {
-    /// Lays out a disc. The border vertex number `start` of its border goes to the end of the long axis of the ellipse, `half_axes`.
+    /// Lays out a disc. The border vertex number `start` of its border goes to the end of the long axis of the
+    /// ellipse, `half_axes`.
     ///
     /// # Errors
     /// The first triangle that turned over, which happens only where numbers are too coarse for the triangles.
@@ -34,7 +37,8 @@ impl Flat {
             let corners = |t: &[u32; 3]| t.map(|v| flat.places[v as usize]);
             disc.triangles.iter().map(corners).position(|[a, b, c]| turn(a, b, c) <= 0.0)
         };
-        // Where slivers are too thin for their angles, the same weight for all neighbours bends the curve more, but lays it flat too.
+        // Where slivers are too thin for their angles, the same weight for all neighbours bends the curve more, but
+        // lays it flat too.
         let mut first = 0;
         for weights in [mean_values(disc), uniform(disc)] {
             let Some(flat) = solved(disc, &border, &weights) else { continue };
@@ -90,9 +94,11 @@ fn solved(disc: &Disc, border: &[(u32, DVec2)], weights: &Weights) -> Option<Fla
         (places[v as usize], free[v as usize]) = (place, NONE);
     }
     let mut count = 0;
-    for number in free.iter_mut().filter(|number| **number != NONE) {
-        *number = count;
-        count += 1;
+    for number in &mut free {
+        if *number != NONE {
+            *number = count;
+            count += 1;
+        }
     }
     if count == 0 {
         return Some(Flat { places });
@@ -180,6 +186,20 @@ mod tests {
         for (place, wanted) in flat.places.iter().zip(&disc.vertices) {
             assert!(place.distance(wanted.truncate()) < 0.01, "{place} {wanted}");
         }
+    }
+
+    #[test]
+    fn holes_are_laid_flat_too() {
+        // A bent sheet with three holes, each closed by a fan.
+        let sheet = grid([12, 12], [false; 2], |p| (40.0 * p).extend(20.0 * p.x * p.y * p.y));
+        let is_hole = |cell: usize| [27, 28, 39, 66, 101].contains(&cell);
+        let kept = sheet.into_iter().enumerate().filter(|(i, _)| !is_hole(i / 2)).map(|(_, facet)| facet);
+        let mesh = clean(kept.collect());
+        let all: Vec<u32> = (0..mesh.vertices_mm().len() as u32).collect();
+        let disc = Disc::around(&mesh, &all).unwrap();
+        assert_eq!(disc.middles.len(), 3);
+        let flat = Flat::of(&disc, DVec2::new(2.0, 1.0), 5).unwrap();
+        assert!(areas(&disc, &flat).iter().all(|&area| area > 0.0));
     }
 
     proptest! {

@@ -10,8 +10,9 @@ use super::soup::Soup;
 
 /// A surface of triangles, closed or with borders, of one part or several, in millimetres.
 ///
-/// Each edge has one triangle or two, each vertex one fan of them, and neighbours agree in their orientation: seen from
-/// outside, corners are counter-clockwise. Closed parts have their inside inside; which side of an open part is its outside is what the file says.
+/// Each edge has one triangle or two, each vertex one fan of them, and neighbours agree in their orientation: seen
+/// from outside, corners are counter-clockwise. Closed parts have their inside inside; which side of an open part
+/// is its outside is what the file says.
 #[derive(Debug, Clone)]
 pub struct Mesh {
     vertices: Vec<DVec3>,
@@ -36,14 +37,17 @@ pub struct MeshPart {
 }
 
 impl Mesh {
-    /// The surface of `facets`, whose corners are counter-clockwise seen from outside, and what had to be mended for it to be one.
+    /// The surface of `facets`, whose corners are counter-clockwise seen from outside, and what had to be mended
+    /// for it to be one.
     ///
-    /// Equal corners are welded. Repeated facets and facets without area are taken out, facets that face the wrong way are turned, parts that touch
-    /// in a corner are parted there, and closed parts that are inside out are turned.
+    /// Equal corners are welded. Repeated facets and facets without area are taken out, facets that face the wrong
+    /// way are turned, parts that touch in a corner are parted there, and closed parts that are inside out are
+    /// turned.
     ///
     /// # Errors
-    /// [`SurfaceError::Empty`], [`SurfaceError::TooMany`], [`SurfaceError::Coordinates`] for what is no model, [`SurfaceError::Crowded`] for an edge of
-    /// three facets, [`SurfaceError::Flat`] for a facet that cannot be mended, and [`SurfaceError::OneSided`].
+    /// [`SurfaceError::Empty`], [`SurfaceError::TooMany`], [`SurfaceError::Coordinates`] for what is no model,
+    /// [`SurfaceError::Crowded`] for an edge of three facets, [`SurfaceError::Flat`] for a facet that cannot be
+    /// mended, and [`SurfaceError::OneSided`].
     pub fn new(
         facets: impl IntoIterator<Item = [[f32; 3]; 3]>,
     ) -> Result<(Self, Vec<MeshRepair>), SurfaceError> {
@@ -85,7 +89,8 @@ impl Mesh {
         self.triangles.iter().map(|t| t.map(|v| self.vertices[v as usize].as_vec3().to_array()))
     }
 
-    /// A unit vector at each vertex that points outside: the mean of the normals of the triangles there, by their angles.
+    /// A unit vector at each vertex that points outside: the mean of the normals of the triangles there, by their
+    /// angles.
     pub fn vertex_normals(&self) -> &[DVec3] {
         &self.normals
     }
@@ -208,7 +213,8 @@ impl Mesh {
         (sum(&self.vertices), self.outside(facet, sum(&self.normals)))
     }
 
-    /// The place on the edge of a side, from 0 at its begin to 1 at its end, and the outside there; the same from both sides.
+    /// The place on the edge of a side, from 0 at its begin to 1 at its end, and the outside there; the same from
+    /// both sides.
     pub(super) fn place_on(&self, side: u32, part: f64) -> (DVec3, DVec3) {
         let (a, b, part) = match self.from(side) < self.to(side) {
             true => (self.from(side), self.to(side), part),
@@ -226,8 +232,8 @@ impl Mesh {
     }
 }
 
-/// The mean of the normals of the triangles at each vertex, by their angles there (Thürmer and Wüthrich 1998): it does not depend on
-/// how a face is cut into triangles.
+/// The mean of the normals of the triangles at each vertex, by their angles there (Thürmer and Wüthrich 1998): it
+/// does not depend on how a face is cut into triangles.
 fn vertex_normals(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Vec<DVec3> {
     let mut sums = vec![DVec3::ZERO; vertices.len()];
     for triangle in triangles {
@@ -241,4 +247,67 @@ fn vertex_normals(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Vec<DVec3> {
     }
     // Where they cancel, as on the tip of a needle, any is as good.
     sums.into_iter().map(|sum| sum.normalize_or(DVec3::Z)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample_meshes::{ball, clean, grid, tube};
+    use super::*;
+
+    #[test]
+    fn a_box_has_the_normals_of_its_corners() {
+        // Whatever way its faces are cut: each of them counts a right angle at a corner.
+        let box_of = |p: DVec3| p.signum() * DVec3::new(10.0, 20.0, 30.0);
+        let corners: Vec<DVec3> = (0..8)
+            .map(|i| box_of(DVec3::from([1, 2, 4].map(|bit| if i & bit > 0 { 1.0 } else { -1.0 }))))
+            .collect();
+        let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let facets = faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+        let facets = facets.map(|f| f.map(|i: usize| corners[i].as_vec3().to_array()));
+        let mesh = clean(facets.collect());
+        assert!((mesh.volume_mm3() - 48_000.0).abs() < 1e-6);
+        assert_eq!(mesh.bounds_mm(), [corners[0], corners[7]]);
+        for (place, normal) in mesh.vertices_mm().iter().zip(mesh.vertex_normals()) {
+            assert!(normal.distance(place.signum() / 3f64.sqrt()) < 1e-9);
+        }
+    }
+
+    #[test]
+    fn stars_know_all_neighbours() {
+        let mesh = clean(tube([8, 3], 10.0, |_| 5.0));
+        for v in 0..mesh.vertices_mm().len() as u32 {
+            let mut found: Vec<u32> = mesh.neighbours(v).collect();
+            found.sort_unstable();
+            let has = |t: &&[u32; 3]| t.contains(&v);
+            let mut wanted: Vec<u32> = mesh.triangles().iter().filter(has).flatten().copied().collect();
+            wanted.sort_unstable();
+            wanted.dedup();
+            wanted.retain(|&other| other != v);
+            assert_eq!(found, wanted);
+        }
+        assert_eq!(mesh.borders().iter().map(Vec::len).collect::<Vec<_>>(), [8, 8]);
+    }
+
+    #[test]
+    fn what_is_open_is_told_with_a_place() {
+        assert!(clean(ball(2, |p| p)).ensure_closed().is_ok());
+        let open = clean(tube([8, 3], 10.0, |h| 5.0 + h)).ensure_closed().unwrap_err();
+        match &open {
+            SurfaceError::Open { position, loops: 2 } => assert_eq!(position.z, 10.0),
+            other => panic!("{other}"),
+        }
+        assert!(open.to_string().contains("--shell"));
+    }
+
+    #[test]
+    fn an_edge_of_three_facets_is_told_with_its_ends() {
+        let fin = [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.5, 1.0]];
+        let facets = grid([2, 1], [false; 2], |p| DVec3::new(p.x - 0.5, p.y, 0.0)).into_iter().chain([fin]);
+        match Mesh::new(facets).unwrap_err() {
+            SurfaceError::Crowded { ends, facets: 3, more: 0 } => {
+                assert!(ends.contains(&DVec3::ZERO) && ends.contains(&DVec3::Y), "{ends:?}");
+            }
+            other => panic!("{other}"),
+        }
+    }
 }

@@ -1,12 +1,15 @@
 //! Triangles made to agree: the same way round, with one fan at each vertex, and their outside out.
 
+use std::f64::consts::TAU;
+
 use glam::DVec3;
 
 use super::error::SurfaceError;
 use super::repair::{RepairKind, Repairs};
 use super::sides::{NONE, from, next, previous, to, triangle_of};
 
-/// Turns triangles so that neighbours agree, the lesser number in each part; gives the part of each triangle and the number of parts.
+/// Turns triangles so that neighbours agree, the lesser number in each part; gives the part of each triangle and
+/// the number of parts.
 pub(super) fn agree(
     vertices: &[DVec3],
     triangles: &mut [[u32; 3]],
@@ -120,8 +123,8 @@ pub(super) fn part_fans(
     }
 }
 
-/// Turns closed parts with their inside out: those that no other part contains, with all that they contain. A hollow in a part stays
-/// one. Parts with a border stay as they are.
+/// Turns closed parts with their inside out: those that no other part contains, with all that they contain. A
+/// hollow in a part stays one. Parts with a border stay as they are.
 pub(super) fn outside_out(
     vertices: &[DVec3],
     triangles: &mut [[u32; 3]],
@@ -151,10 +154,8 @@ pub(super) fn outside_out(
                 angles[other as usize] += solid_angle(corners);
             }
         }
-        // Seen from inside, a closed part is all around: 4π.
-        let contains = |other: &usize| {
-            *other != part && !is_open[*other] && angles[*other].abs() > 2.0 * std::f64::consts::PI
-        };
+        // Seen from inside, a closed part is all around: 4π, and from outside 0.
+        let contains = |other: &usize| *other != part && !is_open[*other] && angles[*other].abs() > TAU;
         let outermost =
             (0..count).filter(contains).max_by(|&a, &b| volumes[a].abs().total_cmp(&volumes[b].abs()));
         is_inverted[part] = volumes[outermost.unwrap_or(part)] < 0.0;
@@ -179,4 +180,102 @@ pub(super) fn assert_agree(triangles: &[[u32; 3]], twins: &[u32]) {
         let twin = twins[side as usize];
         twin == NONE || from(triangles, side) == to(triangles, twin) && twins[twin as usize] == side
     }));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::mesh::{Mesh, MeshPart};
+    use super::super::repair::{MeshRepair, RepairKind};
+    use super::super::sample_meshes::{Facet, ball, grid, torus, tube};
+    use super::*;
+    use proptest::prelude::*;
+
+    fn reversed(facet: Facet) -> Facet {
+        [facet[0], facet[2], facet[1]]
+    }
+
+    fn told(facets: Vec<Facet>) -> (Mesh, Vec<(RepairKind, usize)>) {
+        let (mesh, repairs) = Mesh::new(facets).unwrap();
+        (mesh, repairs.iter().map(|&MeshRepair { repair, count, .. }| (repair, count)).collect())
+    }
+
+    #[test]
+    fn parts_that_touch_are_parted() {
+        // Two pyramids, one upside down, whose tops are one place.
+        let base = [[2.0f32, 0.0], [-1.0, 2.0], [-1.0, -2.0]];
+        let pyramid = |z: f32| {
+            let [a, b, c] = base.map(|[x, y]| [x, y, z]);
+            let top = [0.0; 3];
+            [[a, b, top], [b, c, top], [c, a, top], [c, b, a]]
+        };
+        let below = pyramid(4.0).map(reversed);
+        let (mesh, repairs) = told([pyramid(-4.0), below].concat());
+        assert_eq!(repairs, [(RepairKind::Parted, 1)]);
+        assert_eq!((mesh.vertices_mm().len(), mesh.parts().len()), (8, 2));
+        assert!(mesh.parts().iter().all(|part| part.genus == 0 && part.borders == 0));
+    }
+
+    #[test]
+    fn an_inside_out_model_is_turned_with_its_hollow() {
+        let hollow = |turn: bool| -> Vec<Facet> {
+            let inner = ball(3, |p| 5.0 * p).into_iter().map(reversed);
+            let all = ball(3, |p| 10.0 * p).into_iter().chain(inner);
+            all.map(|facet| if turn { reversed(facet) } else { facet }).collect()
+        };
+        let (right, none) = told(hollow(false));
+        let (turned, repairs) = told(hollow(true));
+        assert!(none.is_empty() && repairs == [(RepairKind::InsideOut, 2)], "{none:?} {repairs:?}");
+        assert!(right.volume_mm3() > 2500.0 && (turned.volume_mm3() - right.volume_mm3()).abs() < 1e-6);
+        // One beside it that is inside out does not touch what is right.
+        let beside = ball(2, |p| 4.0 * p + 30.0 * DVec3::X).into_iter().map(reversed);
+        let (mesh, repairs) = told(hollow(false).into_iter().chain(beside).collect());
+        assert_eq!(repairs, [(RepairKind::InsideOut, 1)]);
+        assert!(mesh.volume_mm3() > right.volume_mm3());
+    }
+
+    #[test]
+    fn a_moebius_band_has_no_outside() {
+        let place = |u: f64, v: f64| {
+            let ((s, c), (hs, hc)) = (u.sin_cos(), (0.5 * u).sin_cos());
+            DVec3::new((20.0 + v * hc) * c, (20.0 + v * hc) * s, v * hs)
+        };
+        let n = 12u32;
+        let corner = |i: u32, side: f64| {
+            // After one turn, the edges have changed places.
+            let side = if i == n { -side } else { side };
+            place(TAU * f64::from(i % n) / f64::from(n), side).as_vec3().to_array()
+        };
+        let cells = (0..n).flat_map(|i| {
+            let [a, b, c, d] = [corner(i, -4.0), corner(i + 1, -4.0), corner(i + 1, 4.0), corner(i, 4.0)];
+            [[a, b, c], [a, c, d]]
+        });
+        let refused = Mesh::new(cells.collect::<Vec<Facet>>()).unwrap_err();
+        assert!(matches!(refused, SurfaceError::OneSided { .. }), "{refused}");
+    }
+
+    #[test]
+    fn what_hangs_together_is_counted() {
+        let counted = |facets: Vec<Facet>| {
+            let parts = told(facets).0.parts();
+            parts.iter().map(|&MeshPart { borders, genus, .. }| (borders, genus)).collect::<Vec<_>>()
+        };
+        assert_eq!(counted(torus([20, 10], 20.0, 5.0)), [(0, 1)]);
+        assert_eq!(counted(tube([20, 5], 20.0, |_| 5.0)), [(2, 0)]);
+        assert_eq!(counted(torus([20, 10], 20.0, 5.0).split_off(2)), [(1, 1)]);
+        let two = grid([2, 2], [false; 2], |p| p.extend(0.0)).into_iter().chain(ball(2, |p| p * 9.0));
+        assert_eq!(counted(two.collect()), [(1, 0), (0, 0)]);
+    }
+
+    proptest! {
+        #[test]
+        fn facets_are_made_to_agree(flips in prop::collection::vec(prop::bool::weighted(0.2), 180)) {
+            let facets = ball(3, |p| 10.0 * p);
+            let mixed = facets.iter().zip(&flips).map(|(&f, &flip)| if flip { reversed(f) } else { f });
+            let (mesh, repairs) = told(mixed.collect());
+            let flipped = flips.iter().filter(|&&flip| flip).count();
+            let wanted = if flipped > 0 { vec![(RepairKind::Turned, flipped)] } else { vec![] };
+            prop_assert_eq!(repairs, wanted);
+            prop_assert!(mesh.is_closed() && mesh.volume_mm3() > 3000.0);
+        }
+    }
 }

@@ -4,7 +4,8 @@ use std::fmt;
 
 use glam::DVec3;
 
-/// A kind of fault in a model that can be mended without changing its shape, with how many there were and where the first was.
+/// A kind of fault in a model that can be mended without changing its shape, with how many there were and where the
+/// first was.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshRepair {
     /// What was done.

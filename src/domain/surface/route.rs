@@ -1,6 +1,7 @@
 //! Ways along the edges of a model, and what is near them.
 //!
-//! A* from each control point to the next, and Dijkstra's search from all that they pass. Ties go to the lower vertex, so the way is always the same.
+//! A* from each control point to the next, and Dijkstra's search from all that they pass. Ties go to the lower
+//! vertex, so the way is always the same.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -14,10 +15,24 @@ use super::mesh::Mesh;
 /// A way from place to place.
 #[derive(Debug, Clone)]
 pub(super) struct Route {
-    /// The vertices it passes, without those that come again at once.
-    pub(super) vertices: Vec<u32>,
+    /// The vertices it passes from each place to the next.
+    pub(super) ways: Vec<Vec<u32>>,
     /// How long it is from each place to the next, in millimetres.
     pub(super) lengths: Vec<f64>,
+}
+
+impl Route {
+    /// All vertices it passes, without those that come again at once.
+    pub(super) fn vertices(&self) -> Vec<u32> {
+        let mut vertices = self.ways.concat();
+        vertices.dedup();
+        vertices
+    }
+
+    /// How long it is in all, in millimetres.
+    pub(super) fn length(&self) -> f64 {
+        self.lengths.iter().sum()
+    }
 }
 
 /// A vertex that a search may go on from; the greatest is the one to take.
@@ -74,16 +89,14 @@ impl Mesh {
     pub(super) fn route(&self, places: &[Place], is_closed: bool) -> Result<Route, SurfaceError> {
         let n = self.vertices_mm().len();
         let mut search = Search { round: 0, seen: vec![0; n], costs: vec![0.0; n], before: vec![0; n] };
-        let mut route = Route { vertices: Vec::new(), lengths: Vec::new() };
+        let mut route = Route { ways: Vec::new(), lengths: Vec::new() };
         for i in 0..places.len() - usize::from(!is_closed) {
             let (from, to) = (places[i], places[(i + 1) % places.len()]);
             let apart = || SurfaceError::Parts { number: i + 1, position: from.point };
-            let (mut way, length) = self.way(&mut search, from, to).ok_or_else(apart)?;
-            way.retain(|&v| route.vertices.last() != Some(&v));
-            route.vertices.extend(way);
+            let (way, length) = self.way(&mut search, from, to).ok_or_else(apart)?;
+            route.ways.push(way);
             route.lengths.push(length);
         }
-        route.vertices.dedup();
         Ok(route)
     }
 
@@ -126,7 +139,8 @@ impl Mesh {
         None
     }
 
-    /// The vertices up to `reach_mm` along edges from any of `sources`, at most `most`, with how far they are, the nearest first.
+    /// The vertices up to `reach_mm` along edges from any of `sources`, at most `most`, with how far they are, the
+    /// nearest first.
     pub(super) fn within(&self, sources: &[u32], reach_mm: f64, most: usize) -> Vec<(u32, f64)> {
         let place = |v: u32| -> DVec3 { self.vertices_mm()[v as usize] };
         let mut costs = vec![f64::INFINITY; self.vertices_mm().len()];
@@ -169,15 +183,16 @@ mod tests {
         let points = [DVec3::X, DVec3::Y, DVec3::NEG_X].map(|p| 10.0 * p);
         let places: Vec<Place> = mesh.nearest(&points, 1.0).into_iter().flatten().collect();
         let route = mesh.route(&places, false).unwrap();
-        for pair in route.vertices.windows(2) {
+        let vertices = route.vertices();
+        for pair in vertices.windows(2) {
             assert!(mesh.neighbours(pair[0]).any(|v| v == pair[1]));
         }
         for length in &route.lengths {
             assert!((15.6..18.0).contains(length), "{length}");
         }
-        let near = mesh.within(&route.vertices, 3.0, usize::MAX);
+        let near = mesh.within(&vertices, 3.0, usize::MAX);
         assert!(near.windows(2).all(|pair| pair[0].1 <= pair[1].1) && near[near.len() - 1].1 <= 3.0);
-        assert!(mesh.within(&route.vertices, 3.0, 5).len() >= route.vertices.len());
+        assert!(mesh.within(&vertices, 3.0, 5).len() >= vertices.len());
     }
 
     #[test]

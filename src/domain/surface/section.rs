@@ -1,7 +1,8 @@
 //! Where a level plane cuts a model.
 //!
-//! A vertex counts as above the plane when it is on it, so that each triangle has no piece of the cut or one, and pieces
-//! join into chains without a special case. A piece goes from the side that goes down through the plane to the one that goes up. Excluded: planes that are not level.
+//! A vertex counts as above the plane when it is on it, so that each triangle has no piece of the cut or one, and
+//! pieces join into chains without a special case. A piece goes from the side that goes down through the plane to
+//! the one that goes up. Excluded: planes that are not level.
 
 use glam::DVec3;
 
@@ -13,8 +14,9 @@ use super::sides::{NONE, next};
 impl Mesh {
     /// All curves in which the plane z = `height_mm` cuts the model, the longest first; there is at least one.
     ///
-    /// Seen from above, the outside is on the right of each: one around a part goes counter-clockwise, as a ring does, one around a hollow
-    /// clockwise. A closed one begins at its back, where y is greatest; one that meets a border is open.
+    /// Seen from above, the outside is on the right of each: one around a part goes counter-clockwise, as a ring
+    /// does, one around a hollow clockwise. A closed one begins at its back, where y is greatest; one that meets a
+    /// border is open.
     ///
     /// # Errors
     /// [`SurfaceError::Height`] with what would be met.

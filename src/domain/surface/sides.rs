@@ -1,7 +1,8 @@
 //! The sides of triangles, and which two are one edge.
 //!
-//! Triangle t has the sides 3t, 3t + 1 and 3t + 2, each from one corner to the next. The side across an edge is found by putting the sides of
-//! each vertex in a bucket and sorting there, which takes a tenth of a second for a million triangles. Excluded: coordinates.
+//! Triangle t has the sides 3t, 3t + 1 and 3t + 2, each from one corner to the next. The side across an edge is
+//! found by putting the sides of each vertex in a bucket and sorting there, which takes a tenth of a second for a
+//! million triangles. Excluded: coordinates.
 
 /// In place of a side or a vertex: none.
 pub(super) const NONE: u32 = u32::MAX;
@@ -31,7 +32,8 @@ pub(super) fn to(triangles: &[[u32; 3]], side: u32) -> u32 {
     from(triangles, next(side))
 }
 
-/// Entries by their keys, which are less than `keys`: where each bucket begins, and what it holds in the order of the entries.
+/// Entries by their keys, which are less than `keys`: where each bucket begins, and what it holds in the order of
+/// the entries.
 pub(super) fn bucketed<T: Copy + Default>(
     keys: usize,
     entries: impl Iterator<Item = (u32, T)> + Clone,
@@ -97,8 +99,8 @@ pub(super) fn twins(triangles: &[[u32; 3]], vertices: usize) -> Result<Vec<u32>,
     crowded.map_or(Ok(twins), Err)
 }
 
-/// The sides without a twin in loops, each in the direction of its sides, from its lowest side on; of triangles that agree in their
-/// orientation and have one fan at each vertex.
+/// The sides without a twin in loops, each in the direction of its sides, from its lowest side on; of triangles
+/// that agree in their orientation and have one fan at each vertex.
 pub(super) fn border_loops(triangles: &[[u32; 3]], twins: &[u32]) -> Vec<Vec<u32>> {
     let mut is_seen = vec![false; twins.len()];
     let mut loops = Vec::new();
@@ -123,7 +125,8 @@ pub(super) fn border_loops(triangles: &[[u32; 3]], twins: &[u32]) -> Vec<Vec<u32
     loops
 }
 
-/// All sides that begin at the vertex where `first` begins, counter-clockwise; `first` must have no side clockwise of it if the vertex is on a border.
+/// All sides that begin at the vertex where `first` begins, counter-clockwise; `first` must have no side clockwise
+/// of it if the vertex is on a border.
 pub(super) fn star(twins: &[u32], first: u32) -> impl Iterator<Item = u32> + '_ {
     let mut at = Some(first);
     std::iter::from_fn(move || {

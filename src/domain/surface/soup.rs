@@ -1,9 +1,10 @@
 //! Facets from a file, made into triangles on common vertices.
 //!
-//! Corners with equal coordinates become one vertex, in the order in which they come first. Facets of which nothing is left, and
-//! repeated ones, are taken out. A facet whose three corners are in one line has no area and no normal; it fills the gap between a long edge on one side
-//! and two short ones on the other. Its longest edge is turned: with d across it, the facets abc and bad become bcd and cad. What was mended is
-//! told. Excluded: gaps between corners that are only nearly equal, which are borders.
+//! Corners with equal coordinates become one vertex, in the order in which they come first. Facets of which nothing
+//! is left, and repeated ones, are taken out. A facet whose three corners are in one line has no area and no
+//! normal; it fills the gap between a long edge on one side and two short ones on the other. Its longest edge is
+//! turned: with d across it, the facets abc and bad become bcd and cad. What was mended is told. Excluded: gaps
+//! between corners that are only nearly equal, which are borders.
 
 use glam::DVec3;
 use rustc_hash::FxHashMap;
@@ -15,9 +16,11 @@ use super::sides::{Crowded, NONE, bucketed, from, previous, to, twins};
 
 /// The most facets: their sides must be numbers of 32 bits, and memory must hold them.
 const MOST_FACETS: usize = 50_000_000;
-/// How far from the origin a corner may be, in millimetres; farther off, 32-bit floats are a tenth of a micrometre apart and more.
+/// How far from the origin a corner may be, in millimetres; farther off, 32-bit floats are a tenth of a micrometre
+/// apart and more.
 const FAR_MM: f32 = 2000.0;
-/// How often facets without area are looked for. Each round mends all that do not touch, so chains of a few are gone in as many rounds.
+/// How often facets without area are looked for. Each round mends all that do not touch, so chains of a few are
+/// gone in as many rounds.
 const ROUNDS: usize = 64;
 
 /// Triangles on common vertices, of any orientation.
@@ -112,7 +115,8 @@ impl Soup {
             if flat.is_empty() {
                 return Ok(());
             }
-            // The longest first: what is across the longest edge of all is no longer, so turning makes edges shorter, and that ends.
+            // The longest first: what is across the longest edge of all is no longer, so turning makes edges
+            // shorter, and that ends.
             flat.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
             if self.mend_round(&flat, repairs)? == 0 {
                 break;
@@ -193,11 +197,8 @@ impl Soup {
         for &v in self.triangles.as_flattened() {
             places[v as usize] = 0;
         }
-        let mut kept = 0;
-        for place in places.iter_mut().filter(|place| **place != NONE) {
-            *place = kept;
-            kept += 1;
-        }
+        let kept = places.iter_mut().filter(|place| **place != NONE);
+        kept.zip(0..).for_each(|(place, number)| *place = number);
         let mut place = places.iter();
         self.vertices.retain(|_| place.next() != Some(&NONE));
         for v in self.triangles.as_flattened_mut() {

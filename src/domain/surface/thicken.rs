@@ -1,8 +1,8 @@
 //! A wall for a model: its inner side.
 //!
-//! Each vertex is moved inwards along its normal until the nearest of the planes of its facets is a wall away, and the moved surface is turned round. Along
-//! borders, quadrilaterals join the two. Excluded: whether the wall meets itself, where the model bends inwards more than the wall is thick; that is for the
-//! caller to judge.
+//! Each vertex is moved inwards along its normal until the nearest of the planes of its facets is a wall away, and
+//! the moved surface is turned round. Along borders, quadrilaterals join the two. Excluded: whether the wall meets
+//! itself, where the model bends inwards more than the wall is thick; that is for the caller to judge.
 
 use glam::DVec3;
 use rustc_hash::FxHashSet;
@@ -13,16 +13,17 @@ use super::sides::{NONE, triangle_of, twins};
 
 /// The least wall in millimetres: less, and its two sides are one for a printer and nearly so for the numbers of files.
 const LEAST_WALL_MM: f64 = 0.01;
-/// The cosine between a vertex's normal and a facet's that is taken for the least. Less, and sharp corners grow long thorns inwards; more, and walls beside
-/// them get thinner. At a corner of a cube it is 0.577.
+/// The cosine between a vertex's normal and a facet's that is taken for the least. Less, and sharp corners grow
+/// long thorns inwards; more, and walls beside them get thinner. At a corner of a cube it is 0.577.
 const LEAST_COSINE: f64 = 0.5;
 
 impl Mesh {
-    /// The model as a wall of about `wall_mm` under its surface: closed, and agreeing in orientation. Of an open part it is one shell, of a closed one
-    /// the outer shell and that of the hollow.
+    /// The model as a wall of about `wall_mm` under its surface: closed, and agreeing in orientation. Of an open
+    /// part it is one shell, of a closed one the outer shell and that of the hollow.
     ///
     /// # Errors
-    /// [`SurfaceError::Wall`] if the wall is no thickness, or so thick that corners of its inner side come to lie on others.
+    /// [`SurfaceError::Wall`] if the wall is no thickness, or so thick that corners of its inner side come to lie
+    /// on others.
     pub fn thickened(&self, wall_mm: f64) -> Result<Self, SurfaceError> {
         let outer = self.vertices_mm();
         let n = outer.len() as u32;

@@ -1,47 +1,45 @@
 //! A smooth curve on a model, past control points.
 //!
-//! The surface around a way past the points is laid flat ([`Disc`], [`Flat`]), a spline is drawn there through where the points came to lie, and walked over the
-//! triangles ([`Walk`]). If the spline needs more room than there is, the same is done with more of the surface. Zhou 2014 §6.3, which lays the whole model flat.
+//! The points are brought to the model and joined by a way along its edges. The surface around that is cut out as a
+//! disc ([`Disc`]) and laid flat, and a spline is drawn on it ([`Drawing`]): about the middle, if the way goes
+//! round what the disc leaves out, and else straight on. If the spline needs more room than there is, the same is
+//! done with more of the surface. Zhou 2014 §6.3, which lays the whole model flat.
 
-use glam::{DVec2, DVec3};
+use std::f64::consts::TAU;
 
-use super::super::space::Spline;
+use glam::DVec3;
+
 use super::closest::Place;
 use super::curve::MeshCurve;
 use super::disc::{Disc, NoDisc};
+use super::drawing::Drawing;
 use super::error::SurfaceError;
-use super::mean_value::Flat;
 use super::mesh::Mesh;
 use super::route::Route;
-use super::walk::{Left, Walk, in_plane};
 
-/// How much of the surface is laid flat beside the way: this part of the longest way between two points, one after the other until the curve stays in it, with at most so many
-/// vertices. More, and it takes longer (30,000 vertices take a second) and curves feel far corners of the model; less, and the curve leaves it.
-const ROOM: [(f64, usize); 3] = [(0.5, 30_000), (1.0, 60_000), (2.0, 120_000)];
+/// How much of the surface is laid flat beside the way: this part of the longest way between two points, one after
+/// the other until the curve stays in it, with at most so many vertices. More, and it takes longer (40,000 vertices
+/// take a third of a second); less, and the curve feels the border, or leaves it.
+const ROOM: [(f64, usize); 3] = [(1.5, 40_000), (3.0, 80_000), (6.0, 160_000)];
+/// Around a way that may go round something, at first no more than this part of the radius of a circle as long.
+/// More, and nothing is left to go round: on a ball, the poles are 1.6 radii from the equator, and the middle of a
+/// flat circle is one.
+const TURN: f64 = 0.6;
 /// Room is never less than so many lengths of an edge.
 const LEAST_EDGES: f64 = 4.0;
-/// A sample of the spline about every so many millimetres of the way, so that chords are a micrometre off where it bends with a radius of 5 mm.
-const SAMPLE_MM: f64 = 0.2;
-/// Samples between two points, at least and at most.
-const SAMPLES: [f64; 2] = [8.0, 4000.0];
-/// So many guides are laid between two control points, where the model is no farther off than this part of the way between them.
-const GUIDES: usize = 3;
-const GUIDE_PART: f64 = 0.35;
 /// Places nearer to each other than this are one, in millimetres.
 const SAME_MM: f64 = 1e-6;
-/// What each corner of a facet counts at least for a control point, so that it is strictly inside. Its place moves by that part of the facet.
-const INSIDE: f64 = 1e-9;
-/// The most oblong ellipse on which the border of an open curve's surroundings is laid.
-const MOST_OBLONG: f64 = 8.0;
 
 impl Mesh {
     /// A smooth curve through `control_mm`, each of which is first brought to the nearest place of the model.
     ///
-    /// It lies on the model, and runs between the points as the spline through them in space would, led onto it. It may meet itself.
+    /// It lies on the model; how it runs between the points depends on how the surface around them can be laid
+    /// flat. It may meet itself.
     ///
     /// # Errors
-    /// [`SurfaceError::Points`] for fewer than two points, or three of a closed curve, [`SurfaceError::Off`] for a point that is farther off than `tolerance_mm`,
-    /// [`SurfaceError::Twice`], [`SurfaceError::Parts`], [`SurfaceError::Handle`], [`SurfaceError::Leaves`] and [`SurfaceError::Flipped`].
+    /// [`SurfaceError::Control`], [`SurfaceError::Points`] for fewer than two points, or three of a closed curve,
+    /// [`SurfaceError::Off`] for a point that is farther off than `tolerance_mm`, [`SurfaceError::Twice`] for two in a row
+    /// at one place, [`SurfaceError::Parts`], [`SurfaceError::Handle`], [`SurfaceError::Coarse`], [`SurfaceError::Leaves`] and [`SurfaceError::Flipped`].
     pub fn through(
         &self,
         control_mm: &[DVec3],
@@ -57,38 +55,11 @@ impl Mesh {
         {
             return Err(SurfaceError::Twice { number: i + 1, position: places[i].point });
         }
-        self.curve_past(&self.guided(places, is_closed), is_closed)
+        self.curve_past(&places, is_closed)
     }
 
-    /// Control points with guides between them: places of the model next to the spline through the points in space. The plane is stretched far from a
-    /// curve, and what is fair there need not be fair on the model; a spline in space is, but it has to be led onto it. Where it runs far
-    /// from the model, as through it, there are none.
-    fn guided(&self, places: Vec<Place>, is_closed: bool) -> Vec<Place> {
-        let n = places.len();
-        let points: Vec<DVec3> = places.iter().map(|place| place.point).collect();
-        if n < if is_closed { 3 } else { 2 } {
-            return places;
-        }
-        let spline = Spline::through(&points, is_closed);
-        let knots = spline.knots();
-        let guides: Vec<DVec3> = (0..knots.len() - 1)
-            .flat_map(|i| (1..=GUIDES).map(move |k| (i, k as f64 / (GUIDES + 1) as f64)))
-            .map(|(i, part)| spline.at(knots[i] + part * (knots[i + 1] - knots[i])).point)
-            .collect();
-        let far_mm = |i: usize| GUIDE_PART * points[i].distance(points[(i + 1) % n]);
-        let most_mm = (0..knots.len() - 1).map(far_mm).fold(0.0, f64::max);
-        let found = self.nearest(&guides, most_mm);
-        let mut guided: Vec<Place> = Vec::with_capacity(n + guides.len());
-        for (i, place) in places.into_iter().enumerate() {
-            guided.push(place);
-            let between = found.chunks_exact(GUIDES).nth(i).into_iter().flatten().flatten();
-            guided.extend(between.filter(|guide| guide.distance <= far_mm(i)).copied());
-        }
-        guided.dedup_by(|b, a| a.point.distance(b.point) < SAME_MM);
-        guided
-    }
-
-    /// A smooth curve along a polyline, brought to the model as control points are; of points that come to the same place one is passed.
+    /// A smooth curve along a polyline, brought to the model as control points are; of points that come to the same
+    /// place one is passed.
     ///
     /// # Errors
     /// As [`Mesh::through`], but for [`SurfaceError::Twice`].
@@ -110,6 +81,9 @@ impl Mesh {
     }
 
     fn places(&self, points: &[DVec3], tolerance_mm: f64) -> Result<Vec<Place>, SurfaceError> {
+        if let Some(i) = points.iter().position(|p| !p.is_finite()) {
+            return Err(SurfaceError::Control { number: i + 1 });
+        }
         let nearest = self.nearest(points, tolerance_mm);
         let place = |(i, found): (usize, Option<Place>)| {
             found.ok_or_else(|| {
@@ -132,11 +106,21 @@ impl Mesh {
         }
         let route = self.route(places, is_closed)?;
         let gap = route.lengths.iter().copied().fold(0.0, f64::max);
-        let edges = LEAST_EDGES * self.edge_length(&route);
+        let least = LEAST_EDGES * self.edge_length(&route);
         let mut last = None;
         for (part, most) in ROOM {
-            let (disc, reach) = self.disc_around(&route, (part * gap).max(edges), most)?;
-            let drawing = Drawing::new(self, &disc, &route, places, reach, is_closed)?;
+            let room = (part * gap).max(least);
+            let turn = TURN * route.length() / TAU * (part / ROOM[0].0);
+            let disc = self.disc_around(&route, room.min(turn.max(least)), most)?;
+            let round = Drawing::round(self, &disc, &route, places, is_closed)?;
+            let wide;
+            let drawing = match round {
+                Some(drawing) => drawing,
+                None => {
+                    wide = self.disc_around(&route, room, most)?;
+                    Drawing::straight(self, &wide, &route, places, is_closed)?
+                }
+            };
             match drawing.curve() {
                 Ok(curve) => return Ok(curve),
                 Err(leaves) => last = Some(leaves),
@@ -145,114 +129,60 @@ impl Mesh {
         Err(last.expect("there was a last try"))
     }
 
-    /// The greatest disc up to `reach` around a way that is one, with how far it reaches.
-    fn disc_around(&self, route: &Route, reach: f64, most: usize) -> Result<(Disc, f64), SurfaceError> {
-        let near = self.within(&route.vertices, reach, most);
+    /// The greatest disc up to `reach` around a way that is one.
+    fn disc_around(&self, route: &Route, reach: f64, most: usize) -> Result<Disc, SurfaceError> {
+        let vertices = route.vertices();
+        let near = self.within(&vertices, reach, most);
         let mut reach = near[near.len() - 1].1;
         loop {
             let count = near.partition_point(|&(_, distance)| distance <= reach);
             let inner: Vec<u32> = near[..count].iter().map(|&(v, _)| v).collect();
             match Disc::around(self, &inner) {
-                Ok(disc) => return Ok((disc, reach)),
-                // The way alone is no disc.
-                Err(_) if reach == 0.0 => return Err(SurfaceError::Handle { position: self.met(route) }),
+                Ok(disc) => return Ok(disc),
+                // Nor is the way alone.
+                Err(NoDisc::Closed) if reach == 0.0 => {
+                    let position = self.vertices_mm()[vertices[0] as usize];
+                    return Err(SurfaceError::Coarse { position });
+                }
+                Err(NoDisc::Handle) if reach == 0.0 => {
+                    return Err(SurfaceError::Handle { position: self.met(&vertices) });
+                }
                 // A little less leaves a cap, or the far side of a handle.
                 Err(NoDisc::Closed | NoDisc::Handle) => {
-                    reach = if count <= route.vertices.len() { 0.0 } else { 0.8 * reach };
+                    reach = if count <= vertices.len() { 0.0 } else { 0.8 * reach };
                 }
             }
         }
     }
 
     /// Where a way comes to a vertex for the second time.
-    fn met(&self, route: &Route) -> DVec3 {
-        let mut sorted = route.vertices.clone();
+    fn met(&self, way: &[u32]) -> DVec3 {
+        let mut sorted = way.to_vec();
         sorted.sort_unstable();
-        let twice = route.vertices.iter().find(|v| {
+        let twice = way.iter().find(|v| {
             let first = sorted.partition_point(|other| other < v);
             sorted.get(first + 1) == Some(v)
         });
-        self.vertices_mm()[*twice.unwrap_or(&route.vertices[0]) as usize]
+        self.vertices_mm()[*twice.unwrap_or(&way[0]) as usize]
     }
 
     /// The mean length of the edges along a way, or at its one vertex.
     fn edge_length(&self, route: &Route) -> f64 {
         let place = |v: u32| self.vertices_mm()[v as usize];
-        let edges =
-            route.vertices.iter().flat_map(|&v| self.neighbours(v).map(move |n| place(v).distance(place(n))));
+        let edges = route
+            .vertices()
+            .into_iter()
+            .flat_map(|v| self.neighbours(v).map(move |n| place(v).distance(place(n))));
         let (sum, count) = edges.fold((0.0, 0.0), |(sum, count), length| (sum + length, count + 1.0));
         sum / count
     }
 }
 
-/// A spline through control points on a disc that is laid flat.
-struct Drawing<'a> {
-    mesh: &'a Mesh,
-    disc: &'a Disc,
-    flat: Flat,
-    route: &'a Route,
-    /// The triangle of each control point, with the weights of its corners.
-    controls: Vec<(usize, [f64; 3])>,
-    is_closed: bool,
-}
-
-impl<'a> Drawing<'a> {
-    fn new(
-        mesh: &'a Mesh,
-        disc: &'a Disc,
-        route: &'a Route,
-        places: &[Place],
-        reach: f64,
-        is_closed: bool,
-    ) -> Result<Self, SurfaceError> {
-        // A closed curve goes round the middle. An open one runs along, from one end of an ellipse to the other.
-        let length: f64 = route.lengths.iter().sum();
-        let oblong = ((0.5 * length + reach) / reach.max(1e-3 * length)).min(MOST_OBLONG);
-        let half_axes = if is_closed { DVec2::ONE } else { DVec2::new(oblong, 1.0) };
-        let far =
-            |&i: &usize| disc.vertices[disc.border[i] as usize].distance(places[places.len() - 1].point);
-        let start = (0..disc.border.len()).min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(0);
-        let flat = Flat::of(disc, half_axes, start).map_err(|triangle| SurfaceError::Flipped {
-            position: disc.vertices[disc.triangles[triangle][0] as usize],
-        })?;
-        let control = |place: &Place| {
-            let triangle =
-                disc.facets.binary_search(&(place.facet as u32)).expect("the way begins at its corner");
-            (triangle, place.weights.map(|weight| (weight + INSIDE) / (1.0 + 3.0 * INSIDE)))
-        };
-        Ok(Self { mesh, disc, flat, route, controls: places.iter().map(control).collect(), is_closed })
-    }
-
-    fn curve(&self) -> Result<MeshCurve, SurfaceError> {
-        let at =
-            |&(triangle, weights): &(usize, [f64; 3])| in_plane(self.disc, &self.flat, triangle, weights);
-        let flat: Vec<DVec3> = self.controls.iter().map(|control| at(control).extend(0.0)).collect();
-        let spline = Spline::through(&flat, self.is_closed);
-        let (triangle, weights) = self.controls[0];
-        let mut walk = Walk::new(self.mesh, self.disc, &self.flat, triangle, weights);
-        let start = walk.at();
-        for (i, knots) in spline.knots().windows(2).enumerate() {
-            let samples = (self.route.lengths[i] / SAMPLE_MM).clamp(SAMPLES[0], SAMPLES[1]).ceil();
-            for sample in 1..=samples as usize {
-                let t = knots[0] + (knots[1] - knots[0]) * sample as f64 / samples;
-                let is_last = self.is_closed && i + 2 == spline.knots().len() && sample == samples as usize;
-                let target = if is_last { start } else { spline.at(t).point.truncate() };
-                let leaves = |left: Left| SurfaceError::Leaves { number: i + 1, position: left.position };
-                walk.go(target, is_last).map_err(leaves)?;
-            }
-        }
-        let places = walk.finished();
-        let position = places[0].0;
-        MeshCurve::cleaned(places, self.is_closed).ok_or(SurfaceError::Twice { number: 1, position })
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::TAU;
-
     use super::super::sample_meshes::{ball, blob, clean, grid, torus, tube};
     use super::*;
+    use glam::DVec2;
     use proptest::prelude::*;
 
     fn circle(n: usize, radius: f64, z: f64) -> Vec<DVec3> {
@@ -318,6 +248,14 @@ mod tests {
             mesh.through(&points[..2], true, 2.0),
             Err(SurfaceError::Points { found: 2, wanted: 3 })
         ));
+        let unknown = mesh.through(&[DVec3::X, DVec3::NAN], false, 2.0);
+        assert_eq!(unknown.unwrap_err(), SurfaceError::Control { number: 2 });
+        // Of four triangles, none is beside the curve.
+        let corners = [[0.0f32, 0.0, 0.0], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0], [0.0, 0.0, 9.0]];
+        let tetrahedron = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]].map(|t| t.map(|v: usize| corners[v]));
+        let tips = corners.map(|[x, y, z]| DVec3::new(x.into(), y.into(), z.into()));
+        let coarse = clean(tetrahedron.to_vec()).through(&tips, true, 1.0).err();
+        assert!(matches!(coarse, Some(SurfaceError::Coarse { .. })), "{coarse:?}");
         assert!(matches!(mesh.through(&[], false, 2.0), Err(SurfaceError::Points { found: 0, wanted: 2 })));
         let twice = [points[0], points[1], points[1], points[2]];
         assert!(matches!(mesh.through(&twice, true, 2.0), Err(SurfaceError::Twice { number: 2, .. })));

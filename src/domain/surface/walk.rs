@@ -1,7 +1,8 @@
 //! A polyline of the plane, walked over the triangles that lie there, and brought back to the model.
 //!
-//! Each sample is strictly inside a triangle and no segment passes a vertex, by exact signs: what would is moved by a few last bits, always the same way.
-//! So a segment leaves each triangle through one side, and there is nothing to decide. Each crossing of an edge is a point of the curve on the model.
+//! Each sample is strictly inside a triangle and no segment passes a vertex, by exact signs: what would is moved by
+//! a few last bits, always the same way. So a segment leaves each triangle through one side, and there is nothing
+//! to decide. Each crossing of an edge is a point of the curve on the model.
 
 use glam::{DVec2, DVec3};
 
@@ -63,7 +64,8 @@ impl<'a> Walk<'a> {
         self.at
     }
 
-    /// Goes straight on to `target`, or to a few last bits beside it unless that is `fixed`, which is then strictly inside a triangle.
+    /// Goes straight on to `target`, or to a few last bits beside it unless that is `fixed`, which is then strictly
+    /// inside a triangle.
     pub(super) fn go(&mut self, target: DVec2, fixed: bool) -> Result<(), Left> {
         if target == self.at {
             return Ok(());
