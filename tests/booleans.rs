@@ -46,8 +46,11 @@ fn hoop(radius: f64, rungs: usize, thickness: f64) -> Solid {
         let round = DVec2::from_angle(p.x / radius) * (radius + side as f64 * thickness);
         round.extend(p.y)
     };
-    wrap(&rectangles(&whole), &Sheet { place: &place, lines_mm: &lines, is_joined: true, chord_mm: 0.05 })
-        .unwrap()
+    wrap(
+        &rectangles(&whole),
+        &Sheet { place: &place, lines_mm: &lines, levels_mm: &[], is_joined: true, chord_mm: 0.05 },
+    )
+    .unwrap()
 }
 
 fn shape() -> impl Strategy<Value = Solid> {

@@ -92,6 +92,10 @@ Examples:
     openwork rect vine.svg --size 120x80mm --components 1 -o panel.svg -o panel.stl
   With smaller rows, and a report of what was tried:
     openwork rect scroll.svg --size 120x80mm --width 8mm -o panel.svg --report panel.json
+  A lamp shade in one piece, narrower at its top:
+    openwork rect vine.svg --roll diameter=90mm,top=60mm --height 110mm --components 1 -o shade.stl
+  Laid over a hill of 20 mm, drawn in greys:
+    openwork rect lace.svg --size 160x100mm --drape hill.png,height=20mm --components 1 -o dish.stl
 
 Exit codes: 0 done; 2 the input or an argument is wrong; 3 the constraints cannot be met;
 4 the result failed verification and nothing was written; 1 a bug of ours.";
