@@ -40,7 +40,7 @@ const CHORD_TRIES: [f64; 4] = [1.0, 0.25, 0.06, 0.015];
 
 /// When a drawing has not the counts of its part, what is finer than the chord error was lost, and the band is made again
 /// within these parts of it.
-const FINER_CHORDS: [f64; 2] = [0.25, 0.0625];
+pub(super) const FINER_CHORDS: [f64; 2] = [0.25, 0.0625];
 
 /// A band that has the planned topology, ready to be written.
 #[derive(Debug, Clone)]

@@ -5,7 +5,7 @@
 
 use std::path::PathBuf;
 
-use super::band::Band;
+use super::band::{Band, FINER_CHORDS};
 use super::choice::Choice;
 use super::error::JobError;
 use super::extrude::{file_name, name};
@@ -134,8 +134,12 @@ impl Band {
 
     /// The part as a solid; what the user may want to know is added to `notes`.
     fn solid(&self, notes: &mut Vec<String>) -> Result<Solid, JobError> {
+        self.solid_within(self.job.tolerances.chord_mm(), notes)
+    }
+
+    /// The same with facets within `chord_mm`, in space.
+    fn solid_within(&self, chord_mm: f64, notes: &mut Vec<String>) -> Result<Solid, JobError> {
         let options = &self.job.options;
-        let chord_mm = self.job.tolerances.chord_mm();
         if let Some(map) = &self.space {
             let solid = space::solid(&self.part, map, chord_mm)?;
             return match self.merged_counts()? {
@@ -165,7 +169,30 @@ impl Band {
             is_shown: options.picture.view.is_some()
                 || ((is_leaning || self.space.is_some()) && !options.laser.carve),
         };
-        Raised::new(wanted, clock, |notes| self.solid(notes))
+        let asked_mm = self.job.tolerances.chord_mm();
+        let mut raised = Raised::new(wanted, clock, |notes| self.solid_within(asked_mm, notes));
+        // On a bend, facets of ink on both sides of a gap that is finer than they are may cross.
+        let finer = FINER_CHORDS.iter().filter(|_| self.space.is_some()).map(|part| part * asked_mm);
+        for chord_mm in finer {
+            if !is_faulty(&raised) {
+                break;
+            }
+            raised = Raised::new(wanted, clock, |notes| {
+                notes.push(format!(
+                    "facets are within {chord_mm:.4} mm instead of {asked_mm:.4} mm, at which some would have crossed"
+                ));
+                self.solid_within(chord_mm, notes)
+            });
+        }
+        raised.map_err(|error| match error {
+            JobError::Mismatch { file, mismatch: mismatch @ Mismatch::Faults { .. }, .. }
+                if self.space.is_some() =>
+            {
+                let remedy = "; ink or gaps are too fine for facets there: use a larger --width, or --min-feature and --min-gap, which say where that is";
+                JobError::Mismatch { file, mismatch, remedy: remedy.to_owned() }
+            }
+            error => error,
+        })
     }
 
     /// What files say of the solid.
@@ -226,6 +253,11 @@ impl Band {
         };
         JobError::Mismatch { file, mismatch, remedy }
     }
+}
+
+/// Whether a solid was made that is not sound.
+fn is_faulty(raised: &Result<Raised, JobError>) -> bool {
+    matches!(raised, Err(JobError::Mismatch { mismatch: Mismatch::Faults { .. }, .. }))
 }
 
 /// The output that is named when the part is at fault.
