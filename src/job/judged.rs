@@ -18,7 +18,7 @@ use super::space;
 use super::stage::{Clock, Stage};
 use super::surface::MergedCounts;
 use crate::export::{self, MeshDocument, SvgDocument, SvgOptions};
-use crate::fabricate::{Counts, Solid};
+use crate::fabricate::{Counts, FabricateError, Solid};
 use crate::planar::{Region, Tolerances};
 use crate::verify::{self, Expected, Mismatch, NarrowPlaces, Narrowest, SvgReport};
 
@@ -257,7 +257,11 @@ impl Band {
 
 /// Whether a solid was made that is not sound.
 fn is_faulty(raised: &Result<Raised, JobError>) -> bool {
-    matches!(raised, Err(JobError::Mismatch { mismatch: Mismatch::Faults { .. }, .. }))
+    matches!(
+        raised,
+        Err(JobError::Mismatch { mismatch: Mismatch::Faults { .. }, .. }
+            | JobError::Fabricate(FabricateError::Rounding { .. } | FabricateError::Facets { .. }))
+    )
 }
 
 /// The output that is named when the part is at fault.
