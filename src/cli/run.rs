@@ -193,13 +193,13 @@ pub(super) fn destinations(arguments: &PatternArguments) -> Result<(Vec<Output>,
     Ok((outputs, report_target))
 }
 
-fn builder(arguments: &BandArguments) -> Result<BandBuilder, CliError> {
+pub(super) fn builder(arguments: &BandArguments) -> Result<BandBuilder, CliError> {
     let builder = BandBuilder::new(&arguments.exemplar, arguments.along.clone())
         .closed_pattern(arguments.closed_pattern)
         .choice(choice(arguments)?)
         .contact_sheet(!arguments.no_contact_sheet)
         .counted(arguments.pattern.report.is_some())
-        .space(SpaceOptions { gap_mm: arguments.gap, twist: arguments.twist.clone() });
+        .space(SpaceOptions { gap_mm: arguments.gap, twist: arguments.twist.clone(), points: None });
     let builder = match arguments.round {
         Some(radius) => builder.round_mm(radius),
         None => builder,

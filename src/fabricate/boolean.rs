@@ -56,6 +56,34 @@ pub fn intersection(a: &Solid, b: &Solid) -> Result<Solid, FabricateError> {
     of_two(a, b, OpType::Intersect)
 }
 
+/// What two solids have in common.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Overlap {
+    /// The volume of all of it, in cubic millimetres.
+    pub volume_mm3: f64,
+    /// How wide the widest piece of it is: twice its volume over its surface. Of a plate that is its thickness, and of no
+    /// convex body more than what a ball in it measures across.
+    pub width_mm: f64,
+    /// The middle of the box around that piece, in millimetres.
+    pub position_mm: DVec3,
+}
+
+/// What two solids have in common, measured; `None` where it has no volume.
+///
+/// # Errors
+/// [`FabricateError::Engine`].
+pub fn overlap(a: &Solid, b: &Solid) -> Result<Option<Overlap>, FabricateError> {
+    let both = manifold(a)?.boolean_with_engine(&manifold(b)?, OpType::Intersect, BooleanEngine::Exact);
+    let pieces = checked(both)?.decompose();
+    let volume_mm3: f64 = pieces.iter().map(Manifold::volume).sum();
+    let width = |piece: &Manifold| 2.0 * piece.volume() / piece.surface_area().max(f64::MIN_POSITIVE);
+    let widest = pieces.iter().max_by(|p, q| width(p).total_cmp(&width(q)));
+    Ok(widest.filter(|piece| piece.volume() > 0.0).map(|piece| {
+        let middle = piece.bounding_box().center();
+        Overlap { volume_mm3, width_mm: width(piece), position_mm: DVec3::new(middle.x, middle.y, middle.z) }
+    }))
+}
+
 impl Solid {
     /// The solid in another place: every point p goes to `motion` (p), rounded to 32-bit floats. A motion that mirrors turns
     /// the facets, so that they face outwards again.
@@ -66,6 +94,9 @@ impl Solid {
         let volume = motion.matrix3.determinant();
         if !volume.is_normal() || !motion.is_finite() {
             return Err(FabricateError::Motion);
+        }
+        if *motion == DAffine3::IDENTITY {
+            return Ok(self.clone());
         }
         let place = |p: [f32; 3]| motion.transform_point3(DVec3::from_array(p.map(f64::from)));
         let turn = |[a, b, c]: [u32; 3]| if volume < 0.0 { [a, c, b] } else { [a, b, c] };

@@ -1,0 +1,174 @@
+//! One part of a scene, made and judged as a command of its own would do it.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use super::cache::Key;
+use super::strip::Strip;
+use crate::domain::RectSize;
+use crate::fabricate::{self, Solid};
+use crate::job::builder::BandJob;
+use crate::job::error::JobError;
+use crate::job::extrude::{self, ExtrudeBridges, ExtrudeMaking};
+use crate::job::output::{Format, Output};
+use crate::job::rect_builder::RectJob;
+use crate::job::stage::Stage;
+use crate::planar::{FillRule, Grid, Region};
+use crate::verify;
+
+/// What a part is made from.
+#[derive(Debug, Clone)]
+pub enum Making {
+    /// A band of an exemplar.
+    Band(Box<BandJob>),
+    /// A rectangle of an exemplar.
+    Rect(Box<RectJob>),
+    /// A drawing as it is.
+    Extrude {
+        /// The drawing.
+        file: PathBuf,
+        /// How it is made.
+        making: Box<ExtrudeMaking>,
+        /// Bridges that are laid before.
+        bridges: Option<ExtrudeBridges>,
+    },
+    /// A plain strip along a curve.
+    Strip(Box<Strip>),
+    /// A plain plate with a corner at the origin.
+    Plate {
+        /// Width and depth.
+        size: RectSize,
+        /// The height in millimetres.
+        thickness_mm: f64,
+    },
+    /// An STL file.
+    Model {
+        /// The file.
+        file: PathBuf,
+    },
+}
+
+/// A part that was made.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Made {
+    /// The solid, numbered as [`Solid::from_facets`] does it.
+    pub(super) solid: Solid,
+    /// The report of its command, or nothing.
+    pub(super) report: Value,
+    /// What the user may want to know.
+    pub(super) notes: Vec<String>,
+    /// Whether it was found in the cache.
+    pub(super) is_kept: bool,
+}
+
+impl Making {
+    /// The word for it in scene files.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Band(_) => "band",
+            Self::Rect(_) => "rect",
+            Self::Extrude { .. } => "extrude",
+            Self::Strip(_) => "strip",
+            Self::Plate { .. } => "plate",
+            Self::Model { .. } => "model",
+        }
+    }
+
+    /// What the part follows from: all options, and the bytes of all `files` that it reads. A file that cannot be read is left to
+    /// the making to complain of.
+    pub(super) fn key(&self, files: &[PathBuf]) -> Key {
+        let read = |file: &PathBuf| std::fs::read(file).unwrap_or_default();
+        let options = format!("{self:?}").into_bytes();
+        let blocks: Vec<Vec<u8>> = std::iter::once(options).chain(files.iter().map(read)).collect();
+        Key::of(blocks.iter().map(Vec::as_slice))
+    }
+
+    /// Makes it.
+    ///
+    /// # Errors
+    /// As the command of this kind.
+    pub(super) fn make(&self, progress: &mut dyn FnMut(Stage)) -> Result<Made, JobError> {
+        let outputs = [Output::stdout(Format::Stl)];
+        let made = |solid: Option<Solid>, report: Value, notes: Vec<String>| {
+            let solid = solid.expect("a solid was asked for");
+            Ok(Made { solid: Solid::from_facets(solid.facets())?, report, notes, is_kept: false })
+        };
+        match self {
+            Self::Band(job) => {
+                let band = job.run_all_for(&outputs, progress)?.swap_remove(0);
+                let (report, _) = band.deliver(&outputs, progress)?;
+                made(Some(band.into_solid()?), json(&report), report.made.notes)
+            }
+            Self::Rect(job) => {
+                let rect = job.run(progress)?;
+                let (report, _) = rect.deliver(&outputs, progress)?;
+                made(Some(rect.into_solid()?), json(&report), report.made.notes)
+            }
+            Self::Extrude { file, making, bridges } => {
+                let (report, _, solid) = extrude::extruded(file, making, *bridges, &outputs, progress)?;
+                made(solid, json(&report), report.notes)
+            }
+            Self::Strip(strip) => {
+                progress(Stage::Stl);
+                made(Some(strip.solid()?), Value::Null, Vec::new())
+            }
+            Self::Plate { size, thickness_mm } => {
+                progress(Stage::Stl);
+                made(Some(plate(*size, *thickness_mm)?), Value::Null, Vec::new())
+            }
+            Self::Model { file } => {
+                progress(Stage::Read);
+                made(Some(model(file)?), Value::Null, Vec::new())
+            }
+        }
+    }
+}
+
+fn json(report: &impl serde::Serialize) -> Value {
+    serde_json::to_value(report).expect("reports have no maps with keys that are not text")
+}
+
+fn plate(size: RectSize, thickness_mm: f64) -> Result<Solid, JobError> {
+    let (w, d) = (size.width_mm(), size.height_mm());
+    let grid = Grid::for_extent(w.max(d)).map_err(fabricate::FabricateError::from)?;
+    let corners = [(0.0, 0.0), (w, 0.0), (w, d), (0.0, d)];
+    let corners = corners.map(|(x, y)| grid.snap(glam::DVec2::new(x, y)).expect("it is within the extent"));
+    Ok(fabricate::extrude(&Region::fill(grid, &[corners.to_vec()], FillRule::EvenOdd), thickness_mm)?)
+}
+
+/// The solid of an STL file, if it is sound.
+fn model(file: &Path) -> Result<Solid, JobError> {
+    let refuse = |found: String| JobError::Option {
+        option: "model",
+        found: format!("{}: {found}", file.display()),
+        wanted: "use an STL of a closed solid".to_owned(),
+    };
+    let bytes = std::fs::read(file).map_err(|error| refuse(error.to_string()))?;
+    let found = verify::read_stl(&bytes).map_err(|error| refuse(error.to_string()))?;
+    if let Some(fault) = found.faults.first() {
+        return Err(refuse(format!("it has {} fault(s), first: {fault}", found.faults.len())));
+    }
+    Ok(Solid::from_facets(corners(&bytes).map_err(|error| refuse(error.to_string()))?)?)
+}
+
+/// The corners of all facets of an STL that was read before.
+fn corners(bytes: &[u8]) -> std::io::Result<Vec<[[f32; 3]; 3]>> {
+    const PREAMBLE: usize = 84;
+    const RECORD: usize = 50;
+    // A header that begins with "solid" does not make a file ASCII, its length makes it binary.
+    let count =
+        bytes.get(PREAMBLE - 4..PREAMBLE).and_then(|count| count.try_into().ok()).map(u32::from_le_bytes);
+    if count.is_some_and(|count| bytes.len() == PREAMBLE + RECORD * count as usize) {
+        let float = |record: &[u8], i: usize| {
+            let bytes = record[12 + 4 * i..16 + 4 * i].try_into().expect("a float has four bytes");
+            f32::from_le_bytes(bytes)
+        };
+        let facet = |record: &[u8]| [0, 3, 6].map(|i| [0, 1, 2].map(|axis| float(record, i + axis)));
+        return Ok(bytes[PREAMBLE..].chunks_exact(RECORD).map(facet).collect());
+    }
+    let facets = stl_io::create_stl_reader(&mut std::io::Cursor::new(bytes))?
+        .map(|facet| facet.map(|facet| facet.vertices.map(|corner| corner.0)))
+        .collect::<std::io::Result<Vec<_>>>();
+    facets
+}
