@@ -50,7 +50,7 @@ mod wrap;
 
 pub use bays::{FilledBay, filled_bays};
 pub use bed::Bed;
-pub use boolean::{Overlap, difference, intersection, overlap, union};
+pub use boolean::{Body, Overlap, difference, intersection, union};
 pub use bridge::{Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts, bridge};
 pub use enforce::{Change, EnforceError, EnforceOptions, Enforced, TIP, enforce};
 pub use gap::{Gap, gap};

@@ -71,7 +71,7 @@ impl Meeting<'_> {
         let first = &copies[self.first];
         let mut best: Option<(usize, Overlap)> = None;
         for &i in self.others.iter().filter(|&&i| first.bounds.meets(&copies[i].bounds)) {
-            let shared = fabricate::overlap(&first.solid, &copies[i].solid)?;
+            let shared = first.body.overlap(&copies[i].body)?;
             let is_wider = |shared: &Overlap| best.as_ref().is_none_or(|(_, b)| shared.width_mm > b.width_mm);
             best = shared.filter(is_wider).map(|shared| (i, shared)).or(best);
         }
@@ -102,8 +102,9 @@ impl Meeting<'_> {
     /// How far the copy is from the nearest of the others.
     fn apart(&self, copies: &[Copy]) -> JobError {
         let first = &copies[self.first];
-        let gaps =
-            self.others.iter().filter_map(|&i| Some((i, fabricate::gap(&first.solid, &copies[i].solid)?)));
+        // Where one cannot be rounded there is no distance to tell.
+        let gap = |i: usize| fabricate::gap(&first.body.solid().ok()?, &copies[i].body.solid().ok()?);
+        let gaps = self.others.iter().filter_map(|&i| Some((i, gap(i)?)));
         let nearest = gaps.min_by(|a, b| a.1.distance_mm.total_cmp(&b.1.distance_mm));
         let part = self.joint.second.as_ref().unwrap_or(&self.joint.first);
         let (second, found) = match nearest {

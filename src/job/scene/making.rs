@@ -17,6 +17,10 @@ use crate::job::stage::Stage;
 use crate::planar::{FillRule, Grid, Region};
 use crate::verify;
 
+/// The part of the chord error that is spent on fewer facets. More, and curves that were drawn finely show corners; less, and
+/// everything takes longer.
+const SIMPLER_SHARE: f64 = 0.25;
+
 /// What a part is made from.
 #[derive(Debug, Clone)]
 pub enum Making {
@@ -75,6 +79,16 @@ impl Making {
         }
     }
 
+    /// The chord error of what is drawn.
+    fn chord_mm(&self) -> Option<f64> {
+        match self {
+            Self::Band(job) => Some(job.tolerances.chord_mm()),
+            Self::Rect(job) => Some(job.band.tolerances.chord_mm()),
+            Self::Extrude { making, .. } => Some(making.tolerances.chord_mm()),
+            Self::Strip(_) | Self::Plate { .. } | Self::Model { .. } => None,
+        }
+    }
+
     /// What the part follows from: all options, and the bytes of all `files` that it reads. A file that cannot be read is left to
     /// the making to complain of.
     pub(super) fn key(&self, files: &[PathBuf]) -> Key {
@@ -92,6 +106,11 @@ impl Making {
         let outputs = [Output::stdout(Format::Stl)];
         let made = |solid: Option<Solid>, report: Value, notes: Vec<String>| {
             let solid = solid.expect("a solid was asked for");
+            // Outlines are finer than the chord error by as much as they are bent after they are drawn.
+            let solid = match self.chord_mm() {
+                Some(chord_mm) => solid.with_fewer_facets(chord_mm * SIMPLER_SHARE)?,
+                None => solid,
+            };
             Ok(Made { solid: Solid::from_facets(solid.facets())?, report, notes, is_kept: false })
         };
         match self {

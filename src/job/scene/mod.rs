@@ -5,7 +5,7 @@
 //! was declared, and against every file that is written, read again. What did not change is taken from a cache: the solids of parts, and
 //! the files of the whole.
 //!
-//! Excluded: scene files ([`crate::cli`]); how solids are united ([`crate::fabricate::union`]).
+//! Excluded: scene files ([`crate::cli`]); how solids are united ([`crate::fabricate::Body`]).
 
 mod cache;
 mod joint;
@@ -36,7 +36,7 @@ use super::output::{Format, Output, Pending, Target, persist};
 use super::raised::{Raised, Wanted};
 use super::stage::{Clock, Stage};
 use crate::export::{self, DEFAULT_COLOUR, MeshDocument, Painted, View};
-use crate::fabricate::{self, Solid};
+use crate::fabricate::{Body, Solid};
 use crate::planar::Sets;
 use crate::verify::{Between, Expected, Mismatch};
 
@@ -92,13 +92,12 @@ pub enum Step<'s> {
 }
 
 /// A copy of a part in its place.
-#[derive(Debug, Clone)]
 struct Copy {
     /// Its name.
     name: String,
     /// The name of its part.
     part: String,
-    solid: Solid,
+    body: Body,
     bounds: Bounds,
     /// The number of the copy of the same part that follows it, if any does.
     next: Option<usize>,
@@ -112,10 +111,7 @@ struct Bounds {
 }
 
 impl Bounds {
-    fn of(solid: &Solid) -> Self {
-        let points = || solid.vertices().iter().map(|p| DVec3::from_array(p.map(f64::from)));
-        let [low, high] =
-            [points().reduce(DVec3::min), points().reduce(DVec3::max)].map(Option::unwrap_or_default);
+    fn of([low, high]: [DVec3; 2]) -> Self {
         Self { low, high }
     }
 
@@ -202,7 +198,7 @@ impl Scene {
         progress(Step::Join);
         let joints = joint::check(&self.joints, &copies)?;
         progress(Step::Unite);
-        let whole = fabricate::union(&copies.iter().map(|copy| &copy.solid).collect::<Vec<_>>())?;
+        let whole = Body::union(&copies.iter().map(|copy| copy.body.clone()).collect::<Vec<_>>())?;
         self.check(&whole, &copies, outputs)?;
         let (shells, genus) = (whole.shells().len(), whole.genus());
         let files = self.files(&whole, outputs, &mut |stage| progress(Step::Files(stage)))?;
@@ -231,7 +227,7 @@ impl Scene {
             genus,
             triangles: whole.triangles().len(),
             volume_mm3: whole.volume_mm3(),
-            bounds_mm: Bounds::of(&whole).to_arrays(),
+            bounds_mm: bounds(&whole).to_arrays(),
             files: Vec::new(),
             bytes: files.iter().map(Vec::len).collect(),
             sha256: files.iter().map(|bytes| sha256(bytes)).collect(),
@@ -302,9 +298,9 @@ impl Scene {
             Option<usize>,
         ),
                     _: &dyn Fn(())| {
-            let solid = solid.moved(motion).map_err(|error| of_part(name, error.into()))?;
-            let bounds = Bounds::of(&solid);
-            Ok(Copy { name: name.clone(), part: part.name.clone(), solid, bounds, next: *next })
+            let body = Body::new(solid, motion).map_err(|error| of_part(name, error.into()))?;
+            let bounds = Bounds::of(body.bounds_mm());
+            Ok(Copy { name: name.clone(), part: part.name.clone(), body, bounds, next: *next })
         };
         each(&wanted, copy, &mut |()| ()).into_iter().collect()
     }
@@ -388,13 +384,18 @@ fn of_part(name: &str, error: JobError) -> JobError {
     }
 }
 
+/// The box around a solid.
+fn bounds(solid: &Solid) -> Bounds {
+    let points = || solid.vertices().iter().map(|p| DVec3::from_array(p.map(f64::from)));
+    Bounds::of([points().reduce(DVec3::min), points().reduce(DVec3::max)].map(Option::unwrap_or_default))
+}
+
 /// Which copies hang together, for people.
 fn groups(copies: &[Copy]) -> Result<String, JobError> {
     let mut sets = Sets::new(copies.len());
     for i in 0..copies.len() {
         for j in 0..i {
-            if copies[i].bounds.meets(&copies[j].bounds)
-                && fabricate::overlap(&copies[i].solid, &copies[j].solid)?.is_some()
+            if copies[i].bounds.meets(&copies[j].bounds) && copies[i].body.overlap(&copies[j].body)?.is_some()
             {
                 sets.join(i, j);
             }
