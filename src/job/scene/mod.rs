@@ -36,7 +36,7 @@ use super::output::{Format, Output, Pending, Target, persist};
 use super::raised::{Raised, Wanted};
 use super::stage::{Clock, Stage};
 use crate::export::{self, DEFAULT_COLOUR, MeshDocument, Painted, View};
-use crate::fabricate::{Body, Solid};
+use crate::fabricate::{self, Body, Solid};
 use crate::planar::Sets;
 use crate::verify::{Between, Expected, Mismatch};
 
@@ -313,7 +313,7 @@ impl Scene {
         };
         let file = PathBuf::from(outputs.first().map_or("the scene".to_owned(), |o| o.target().to_string()));
         if let Some(wanted) = is_missed(self.shells, shells) {
-            let remedy = format!("; {}", groups(copies)?);
+            let remedy = format!("; {}", groups(whole, copies)?);
             return Err(JobError::Mismatch {
                 file,
                 mismatch: Mismatch::Shells { found: shells, wanted },
@@ -391,7 +391,7 @@ fn bounds(solid: &Solid) -> Bounds {
 }
 
 /// Which copies hang together, for people.
-fn groups(copies: &[Copy]) -> Result<String, JobError> {
+fn groups(whole: &Solid, copies: &[Copy]) -> Result<String, JobError> {
     let mut sets = Sets::new(copies.len());
     for i in 0..copies.len() {
         for j in 0..i {
@@ -405,14 +405,34 @@ fn groups(copies: &[Copy]) -> Result<String, JobError> {
     for (i, copy) in copies.iter().enumerate() {
         groups.entry(sets.find(i)).or_default().push(&copy.name);
     }
+    if let [cavity, ..] = &cavities(whole)[..] {
+        return Ok(format!(
+            "where parts overlap they enclose {} cavities, the first near ({:.2}, {:.2}, {:.2}) mm: move a part so that it opens or fills them",
+            cavities(whole).len(),
+            cavity.x,
+            cavity.y,
+            cavity.z
+        ));
+    }
     if groups.len() < 2 {
-        return Ok(
-            "all parts hang together, so that some part is itself in several pieces, or encloses a cavity"
-                .to_owned(),
-        );
+        return Ok("all parts hang together, so that some part is itself in several pieces".to_owned());
     }
     let texts: Vec<String> = groups.values().map(|names| names.join(", ")).collect();
     Ok(format!("these hang together: {}", texts.join(" | ")))
+}
+
+/// A corner of each shell that faces inwards.
+fn cavities(whole: &Solid) -> Vec<DVec3> {
+    let at = |v: u32| DVec3::from_array(whole.vertices()[v as usize].map(f64::from));
+    let corner = |shell: fabricate::Shell<'_>| {
+        let origin = at(shell.first_vertex);
+        let six_volumes = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| at(v) - origin);
+            a.dot(b.cross(c))
+        };
+        (shell.triangles.iter().map(six_volumes).sum::<f64>() < 0.0).then_some(origin)
+    };
+    whole.shells().filter_map(corner).collect()
 }
 
 /// The corners of all facets.
