@@ -9,5 +9,5 @@ solids=${1:-$(mktemp -d)}
 mkdir -p "$solids" docs/pictures
 for scene in examples/scenes/*.toml; do
   name=$(basename "$scene" .toml)
-  target/release/openwork build "$scene" --quiet --pixels 720 -o "$solids/$name.stl" -o "docs/pictures/scene-$name.png"
+  target/release/openwork build "$scene" --quiet --pixels 560 -o "$solids/$name.stl" -o "docs/pictures/scene-$name.png"
 done

@@ -112,7 +112,8 @@ fn an_ornament_is_judged_as_by_its_own_command() {
     assert!(bench.build().status.success());
     assert_ne!(fs::read(bench.path().join("crown.stl")).unwrap(), before);
     // What cannot be had is refused as there, with the name of the part.
-    bench.write("scene.toml", &scene.replace("components = 1\n", "components = 40\n"));
+    bench.write("scene.toml", scene);
+    bench.write("vine.svg", &fs::read_to_string(vine.replace("vine", "strands")).unwrap());
     fs::remove_file(bench.path().join("crown.stl")).unwrap();
     let (code, message) = bench.refusal();
     assert!(code == 3 && message.contains("part vine: "), "{code} {message}");
@@ -173,7 +174,7 @@ fn wrong_scenes_are_told_with_their_lines() {
             &["line 6: part hoop is made from nothing", "band, rect, extrude"],
         ),
         ("strip = true", "band = \"none.svg\"", &["part post", "none.svg"]),
-        ("strip = true", "model = \"none.stl\"", &["only a band or a strip follows one"]),
+        ("strip = true", "strip = \"line:9mm\"", &["strip of part post is a curve, and points are another"]),
         ("repeat = 3", "repeat = { times = 3 }", &["puts all copies in one place", "about = \"z\""]),
         (
             "repeat = 3",

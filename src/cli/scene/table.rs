@@ -20,11 +20,11 @@ pub(in crate::cli) enum SceneError {
     #[error("{}: {error}", file.display())]
     Syntax { file: PathBuf, error: Box<toml::de::Error> },
     #[error("{}, line {line}: {of} has no key {key}{}", file.display(), did_you_mean(suggestion.as_deref()))]
-    Unknown { file: PathBuf, line: usize, of: String, key: String, suggestion: Option<String> },
+    Unknown { file: PathBuf, line: usize, of: Box<str>, key: Box<str>, suggestion: Option<String> },
     #[error("{}, line {line}: {key} of {of} {found}; {wanted}", file.display())]
-    Value { file: PathBuf, line: usize, of: String, key: String, found: String, wanted: String },
+    Value { file: PathBuf, line: usize, of: Box<str>, key: Box<str>, found: Box<str>, wanted: Box<str> },
     #[error("{}, line {line}: {of} {found}; {wanted}", file.display())]
-    Table { file: PathBuf, line: usize, of: String, found: String, wanted: String },
+    Table { file: PathBuf, line: usize, of: Box<str>, found: Box<str>, wanted: Box<str> },
 }
 
 /// A scene file and its text.
@@ -88,9 +88,9 @@ impl<'t> Table<'t> {
         SceneError::Table {
             file: self.source.file.to_owned(),
             line: line_of(self.source.text, self.span.start),
-            of: self.of.clone(),
-            found: found.to_owned(),
-            wanted: wanted.to_owned(),
+            of: self.of.as_str().into(),
+            found: found.into(),
+            wanted: wanted.into(),
         }
     }
 }
@@ -101,8 +101,8 @@ impl<'t> Entry<'t> {
         SceneError::Unknown {
             file: self.source.file.to_owned(),
             line: line_of(self.source.text, self.key_at),
-            of: self.of.clone(),
-            key: self.key.to_owned(),
+            of: self.of.as_str().into(),
+            key: self.key.into(),
             suggestion: nearest(self.key, known),
         }
     }
@@ -117,10 +117,10 @@ impl<'t> Entry<'t> {
         SceneError::Value {
             file: self.source.file.to_owned(),
             line: line_of(self.source.text, self.value.span().start),
-            of: self.of.clone(),
-            key: self.key.to_owned(),
-            found: found.to_owned(),
-            wanted: wanted.to_owned(),
+            of: self.of.as_str().into(),
+            key: self.key.into(),
+            found: found.into(),
+            wanted: wanted.into(),
         }
     }
 
@@ -165,7 +165,7 @@ impl<'t> Entry<'t> {
 
     /// Whole, and at least 1.
     pub(super) fn count(&self) -> Result<usize, SceneError> {
-        let whole = |n: f64| (n >= 1.0 && n <= 1e4 && n.fract() == 0.0).then_some(n as usize);
+        let whole = |n: f64| ((1.0..=1e4).contains(&n) && n.fract() == 0.0).then_some(n as usize);
         number(self.value.get_ref())
             .and_then(whole)
             .ok_or_else(|| self.wrong("a whole number from 1 to 10000"))

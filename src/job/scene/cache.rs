@@ -98,9 +98,30 @@ impl Cache {
 mod tests {
     use super::*;
 
+    /// A folder of its own for a test, which is gone afterwards.
+    struct Folder(PathBuf);
+
+    impl Folder {
+        fn new(name: &str) -> Self {
+            let folder = std::env::temp_dir().join(format!("openwork-{name}-{}", std::process::id()));
+            std::fs::create_dir_all(&folder).unwrap();
+            Self(folder)
+        }
+
+        fn path(&self) -> &Path {
+            &self.0
+        }
+    }
+
+    impl Drop for Folder {
+        fn drop(&mut self) {
+            let _ = std::fs::remove_dir_all(&self.0);
+        }
+    }
+
     #[test]
     fn entries_come_back_whole_or_not_at_all() {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = Folder::new("entries");
         let cache = Cache::new(&folder.path().join("new/cache"));
         let key = Key::of([&b"a"[..], b"bc"]);
         assert_ne!(key, Key::of([&b"ab"[..], b"c"]));
@@ -124,7 +145,7 @@ mod tests {
 
     #[test]
     fn a_folder_that_cannot_be_is_told() {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = Folder::new("no-folder");
         let file = folder.path().join("file");
         std::fs::write(&file, "").unwrap();
         let told = Cache::new(&file).put(&Key::of([&b"a"[..]]), &[]).unwrap_err();

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Copy;
+use super::Placed;
 use super::workers::each;
 use crate::fabricate::{self, Overlap};
 use crate::job::error::JobError;
@@ -37,7 +37,7 @@ pub struct JointReport {
 ///
 /// # Errors
 /// [`JobError::Joint`] names the first copy that does not fuse, with the distance and the place.
-pub(super) fn check(joints: &[Joint], copies: &[Copy]) -> Result<Vec<JointReport>, JobError> {
+pub(super) fn check(joints: &[Joint], copies: &[Placed]) -> Result<Vec<JointReport>, JobError> {
     let wanted: Vec<Meeting<'_>> = joints.iter().flat_map(|joint| meetings(joint, copies)).collect();
     let found = each(&wanted, |meeting, _: &dyn Fn(())| meeting.look(copies), &mut |()| ());
     found.into_iter().collect()
@@ -50,7 +50,7 @@ struct Meeting<'j> {
     others: Vec<usize>,
 }
 
-fn meetings<'j>(joint: &'j Joint, copies: &[Copy]) -> Vec<Meeting<'j>> {
+fn meetings<'j>(joint: &'j Joint, copies: &[Placed]) -> Vec<Meeting<'j>> {
     let of = |part: &str| (0..copies.len()).filter(|&i| copies[i].part == part).collect::<Vec<_>>();
     let own = of(&joint.first);
     let meeting = |first, others| Meeting { joint, first, others };
@@ -67,7 +67,7 @@ fn meetings<'j>(joint: &'j Joint, copies: &[Copy]) -> Vec<Meeting<'j>> {
 }
 
 impl Meeting<'_> {
-    fn look(&self, copies: &[Copy]) -> Result<JointReport, JobError> {
+    fn look(&self, copies: &[Placed]) -> Result<JointReport, JobError> {
         let first = &copies[self.first];
         let mut best: Option<(usize, Overlap)> = None;
         for &i in self.others.iter().filter(|&&i| first.bounds.meets(&copies[i].bounds)) {
@@ -100,7 +100,7 @@ impl Meeting<'_> {
     }
 
     /// How far the copy is from the nearest of the others.
-    fn apart(&self, copies: &[Copy]) -> JobError {
+    fn apart(&self, copies: &[Placed]) -> JobError {
         let first = &copies[self.first];
         // Where one cannot be rounded there is no distance to tell.
         let gap = |i: usize| fabricate::gap(&first.body.solid().ok()?, &copies[i].body.solid().ok()?);

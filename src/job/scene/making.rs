@@ -186,8 +186,7 @@ fn corners(bytes: &[u8]) -> std::io::Result<Vec<[[f32; 3]; 3]>> {
         let facet = |record: &[u8]| [0, 3, 6].map(|i| [0, 1, 2].map(|axis| float(record, i + axis)));
         return Ok(bytes[PREAMBLE..].chunks_exact(RECORD).map(facet).collect());
     }
-    let facets = stl_io::create_stl_reader(&mut std::io::Cursor::new(bytes))?
-        .map(|facet| facet.map(|facet| facet.vertices.map(|corner| corner.0)))
-        .collect::<std::io::Result<Vec<_>>>();
-    facets
+    let mut cursor = std::io::Cursor::new(bytes);
+    let facets = stl_io::create_stl_reader(&mut cursor)?;
+    facets.map(|facet| Ok(facet?.vertices.map(|corner| corner.0))).collect()
 }

@@ -9,10 +9,12 @@
 
 mod cache;
 mod joint;
+mod kept;
 mod making;
 mod place;
 mod report;
 mod strip;
+mod whole;
 mod workers;
 
 use std::collections::BTreeMap;
@@ -23,6 +25,7 @@ use glam::DVec3;
 
 use cache::{Cache, Key};
 pub use joint::{Joint, JointReport};
+use kept::{facet_bytes, part_of, unpacked};
 use making::Made;
 pub use making::Making;
 pub use place::{Axis, Placement, Repeat};
@@ -36,9 +39,8 @@ use super::output::{Format, Output, Pending, Target, persist};
 use super::raised::{Raised, Wanted};
 use super::stage::{Clock, Stage};
 use crate::export::{self, DEFAULT_COLOUR, MeshDocument, Painted, View};
-use crate::fabricate::{self, Body, Solid};
-use crate::planar::Sets;
-use crate::verify::{Between, Expected, Mismatch};
+use crate::fabricate::{Body, Solid};
+use crate::verify::{Between, Expected};
 
 /// A part of a scene.
 #[derive(Debug, Clone)]
@@ -92,7 +94,7 @@ pub enum Step<'s> {
 }
 
 /// A copy of a part in its place.
-struct Copy {
+struct Placed {
     /// Its name.
     name: String,
     /// The name of its part.
@@ -199,7 +201,7 @@ impl Scene {
         let joints = joint::check(&self.joints, &copies)?;
         progress(Step::Unite);
         let whole = Body::union(&copies.iter().map(|copy| copy.body.clone()).collect::<Vec<_>>())?;
-        self.check(&whole, &copies, outputs)?;
+        whole::check([self.shells, self.genus], &whole, &copies, outputs)?;
         let (shells, genus) = (whole.shells().len(), whole.genus());
         let files = self.files(&whole, outputs, &mut |stage| progress(Step::Files(stage)))?;
         let parts = self.parts.iter().zip(&made).map(|(part, made)| PartReport {
@@ -275,7 +277,7 @@ impl Scene {
     }
 
     /// All copies of all parts in their places.
-    fn copies(&self, made: &[Made]) -> Result<Vec<Copy>, JobError> {
+    fn copies(&self, made: &[Made]) -> Result<Vec<Placed>, JobError> {
         let mut wanted = Vec::new();
         for (part, made) in self.parts.iter().zip(made) {
             let first = wanted.len();
@@ -300,31 +302,9 @@ impl Scene {
                     _: &dyn Fn(())| {
             let body = Body::new(solid, motion).map_err(|error| of_part(name, error.into()))?;
             let bounds = Bounds::of(body.bounds_mm());
-            Ok(Copy { name: name.clone(), part: part.name.clone(), body, bounds, next: *next })
+            Ok(Placed { name: name.clone(), part: part.name.clone(), body, bounds, next: *next })
         };
         each(&wanted, copy, &mut |()| ()).into_iter().collect()
-    }
-
-    /// That the whole is as declared.
-    fn check(&self, whole: &Solid, copies: &[Copy], outputs: &[Output]) -> Result<(), JobError> {
-        let (shells, genus) = (whole.shells().len(), whole.genus());
-        let is_missed = |wanted: Option<Between>, found: usize| {
-            wanted.filter(|wanted| !(wanted.least..=wanted.most).contains(&found))
-        };
-        let file = PathBuf::from(outputs.first().map_or("the scene".to_owned(), |o| o.target().to_string()));
-        if let Some(wanted) = is_missed(self.shells, shells) {
-            let remedy = format!("; {}", groups(whole, copies)?);
-            return Err(JobError::Mismatch {
-                file,
-                mismatch: Mismatch::Shells { found: shells, wanted },
-                remedy,
-            });
-        }
-        if let Some(wanted) = is_missed(self.genus, genus) {
-            let mismatch = Mismatch::Genus { found: genus as i64, wanted };
-            return Err(JobError::Mismatch { file, mismatch, remedy: String::new() });
-        }
-        Ok(())
     }
 
     /// The content of each output, judged.
@@ -370,7 +350,7 @@ fn generator() -> String {
     format!("Openwork {}", env!("CARGO_PKG_VERSION"))
 }
 
-fn copy_report(copy: &Copy) -> CopyReport {
+fn copy_report(copy: &Placed) -> CopyReport {
     CopyReport { name: copy.name.clone(), bounds_mm: copy.bounds.to_arrays() }
 }
 
@@ -388,75 +368,4 @@ fn of_part(name: &str, error: JobError) -> JobError {
 fn bounds(solid: &Solid) -> Bounds {
     let points = || solid.vertices().iter().map(|p| DVec3::from_array(p.map(f64::from)));
     Bounds::of([points().reduce(DVec3::min), points().reduce(DVec3::max)].map(Option::unwrap_or_default))
-}
-
-/// Which copies hang together, for people.
-fn groups(whole: &Solid, copies: &[Copy]) -> Result<String, JobError> {
-    let mut sets = Sets::new(copies.len());
-    for i in 0..copies.len() {
-        for j in 0..i {
-            if copies[i].bounds.meets(&copies[j].bounds) && copies[i].body.overlap(&copies[j].body)?.is_some()
-            {
-                sets.join(i, j);
-            }
-        }
-    }
-    let mut groups: BTreeMap<usize, Vec<&str>> = BTreeMap::new();
-    for (i, copy) in copies.iter().enumerate() {
-        groups.entry(sets.find(i)).or_default().push(&copy.name);
-    }
-    if let [cavity, ..] = &cavities(whole)[..] {
-        return Ok(format!(
-            "where parts overlap they enclose {} cavities, the first near ({:.2}, {:.2}, {:.2}) mm: move a part so that it opens or fills them",
-            cavities(whole).len(),
-            cavity.x,
-            cavity.y,
-            cavity.z
-        ));
-    }
-    if groups.len() < 2 {
-        return Ok("all parts hang together, so that some part is itself in several pieces".to_owned());
-    }
-    let texts: Vec<String> = groups.values().map(|names| names.join(", ")).collect();
-    Ok(format!("these hang together: {}", texts.join(" | ")))
-}
-
-/// A corner of each shell that faces inwards.
-fn cavities(whole: &Solid) -> Vec<DVec3> {
-    let at = |v: u32| DVec3::from_array(whole.vertices()[v as usize].map(f64::from));
-    let corner = |shell: fabricate::Shell<'_>| {
-        let origin = at(shell.first_vertex);
-        let six_volumes = |t: &[u32; 3]| {
-            let [a, b, c] = t.map(|v| at(v) - origin);
-            a.dot(b.cross(c))
-        };
-        (shell.triangles.iter().map(six_volumes).sum::<f64>() < 0.0).then_some(origin)
-    };
-    whole.shells().filter_map(corner).collect()
-}
-
-/// The corners of all facets.
-fn facet_bytes(solid: &Solid) -> Vec<u8> {
-    solid.facets().flat_map(|facet| facet.concat()).flat_map(f32::to_le_bytes).collect()
-}
-
-/// A part as it was kept.
-fn part_of(blocks: &[Vec<u8>]) -> Option<Made> {
-    let [facets, report, notes] = blocks else { return None };
-    let float = |bytes: &[u8; 4]| f32::from_le_bytes(*bytes);
-    let floats: Vec<f32> = facets.as_chunks::<4>().0.iter().map(float).collect();
-    let facets = floats.as_chunks::<3>().0.as_chunks::<3>().0;
-    Some(Made {
-        solid: Solid::from_facets(facets.iter().copied()).ok()?,
-        report: serde_json::from_slice(report).ok()?,
-        notes: serde_json::from_slice(notes).ok()?,
-        is_kept: true,
-    })
-}
-
-/// A whole as it was kept: its report, and the content of its files.
-fn unpacked(blocks: Vec<Vec<u8>>) -> Option<(SceneReport, Vec<Vec<u8>>)> {
-    let mut blocks = blocks.into_iter();
-    let report = serde_json::from_slice(&blocks.next()?).ok()?;
-    Some((report, blocks.collect()))
 }
