@@ -179,7 +179,7 @@ fn wrong_scenes_are_told_with_their_lines() {
         (
             "repeat = 3",
             "place = { turn = 3 }",
-            &["line 16: turn of place of part post is integer; use three numbers"],
+            &["line 15: turn of place of part post is integer; use three numbers"],
         ),
         (
             "[\"post\", \"hoop\"]",
