@@ -13,7 +13,7 @@ use crate::job::{Format, JobError, Output, SceneReport, Target, View};
 /// What follows the options in the help of `build`.
 pub(super) const HELP: &str = "\
 A scene file is TOML; docs/scenes.md is its manual. Paths in it are relative to its folder. A part is made from an
-exemplar (band, rect), a drawing (extrude), plain (strip, plate), or an STL (model); its other keys are options of that
+exemplar (band, rect), a drawing (extrude), plain (strip, plate), or a mesh file (model); its other keys are options of that
 command. place = { centre, scale, mirror, turn, move } is applied in this order; repeat = 6 makes six copies around the
 upright axis, repeat = { times, about, turn, through, step, mirror } others. A joint names parts that must fuse.
 

@@ -156,7 +156,11 @@ impl<'t> Typed<'_, 't> {
         for word in read {
             let text = word.to_string_lossy().into_owned();
             let (option, value) = text.split_once('=').unwrap_or((&text, ""));
-            let value = if is_path { self.path(value) } else { self.curve(value) };
+            let value = match name_of(arg) {
+                _ if is_path => self.path(value),
+                "drape" => self.drape(value),
+                _ => self.curve(value),
+            };
             self.words.push(if value.is_empty() {
                 option.into()
             } else {
@@ -181,6 +185,13 @@ impl<'t> Typed<'_, 't> {
         let path = self.folder.join(name);
         self.files.push(path.clone());
         path.to_string_lossy().into_owned()
+    }
+
+    /// A height field in a file, with what is said of it behind a comma.
+    fn drape(&mut self, text: &str) -> String {
+        let (name, rest) = text.split_once(',').map_or((text, None), |(name, rest)| (name, Some(rest)));
+        let path = self.path(name);
+        rest.map_or_else(|| path.clone(), |rest| format!("{path},{rest}"))
     }
 
     /// A curve, whose file is looked for from the folder of the scene.

@@ -7,6 +7,7 @@ use serde_json::Value;
 use super::cache::Key;
 use super::strip::Strip;
 use crate::domain::RectSize;
+use crate::export;
 use crate::fabricate::{self, Solid};
 use crate::job::builder::BandJob;
 use crate::job::error::JobError;
@@ -46,7 +47,7 @@ pub enum Making {
         /// The height in millimetres.
         thickness_mm: f64,
     },
-    /// An STL file.
+    /// A mesh file: STL, 3MF or OBJ.
     Model {
         /// The file.
         file: PathBuf,
@@ -156,37 +157,20 @@ fn plate(size: RectSize, thickness_mm: f64) -> Result<Solid, JobError> {
     Ok(fabricate::extrude(&Region::fill(grid, &[corners.to_vec()], FillRule::EvenOdd), thickness_mm)?)
 }
 
-/// The solid of an STL file, if it is sound.
+/// The solid of a mesh file, if it is sound.
 fn model(file: &Path) -> Result<Solid, JobError> {
     let refuse = |found: String| JobError::Option {
         option: "model",
         found: format!("{}: {found}", file.display()),
-        wanted: "use an STL of a closed solid".to_owned(),
+        wanted: "use an STL, a 3MF or an OBJ of a closed solid".to_owned(),
     };
     let bytes = std::fs::read(file).map_err(|error| refuse(error.to_string()))?;
-    let found = verify::read_stl(&bytes).map_err(|error| refuse(error.to_string()))?;
-    if let Some(fault) = found.faults.first() {
-        return Err(refuse(format!("it has {} fault(s), first: {fault}", found.faults.len())));
+    let facets = verify::read_facets(&bytes).map_err(|error| refuse(error.to_string()))?;
+    let solid = Solid::from_facets(facets).map_err(|error| refuse(error.to_string()))?;
+    // What crosses itself is seen by the same eyes as in what is written.
+    let found = verify::read_stl(&export::stl(&solid, "")?).map_err(|error| refuse(error.to_string()))?;
+    match found.faults.first() {
+        Some(fault) => Err(refuse(format!("it has {} fault(s), first: {fault}", found.faults.len()))),
+        None => Ok(solid),
     }
-    Ok(Solid::from_facets(corners(&bytes).map_err(|error| refuse(error.to_string()))?)?)
-}
-
-/// The corners of all facets of an STL that was read before.
-fn corners(bytes: &[u8]) -> std::io::Result<Vec<[[f32; 3]; 3]>> {
-    const PREAMBLE: usize = 84;
-    const RECORD: usize = 50;
-    // A header that begins with "solid" does not make a file ASCII, its length makes it binary.
-    let count =
-        bytes.get(PREAMBLE - 4..PREAMBLE).and_then(|count| count.try_into().ok()).map(u32::from_le_bytes);
-    if count.is_some_and(|count| bytes.len() == PREAMBLE + RECORD * count as usize) {
-        let float = |record: &[u8], i: usize| {
-            let bytes = record[12 + 4 * i..16 + 4 * i].try_into().expect("a float has four bytes");
-            f32::from_le_bytes(bytes)
-        };
-        let facet = |record: &[u8]| [0, 3, 6].map(|i| [0, 1, 2].map(|axis| float(record, i + axis)));
-        return Ok(bytes[PREAMBLE..].chunks_exact(RECORD).map(facet).collect());
-    }
-    let mut cursor = std::io::Cursor::new(bytes);
-    let facets = stl_io::create_stl_reader(&mut cursor)?;
-    facets.map(|facet| Ok(facet?.vertices.map(|corner| corner.0))).collect()
 }

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::domain::{BandMap, CurveSpec};
 use crate::fabricate::Solid;
-use crate::fit::{Outline, OutlineContour, StitchMethod};
+use crate::fit::{Outline, OutlineContour, Sides, StitchMethod};
 use crate::job::band::read_curve;
 use crate::job::builder::{BandBuilder, BandJob};
 use crate::job::error::JobError;
@@ -39,7 +39,7 @@ impl Strip {
     pub(super) fn solid(&self) -> Result<Solid, JobError> {
         let options = &self.job.options;
         let chord_mm = self.job.tolerances.chord_mm();
-        let in_space = read_space_curve(options)?;
+        let in_space = read_space_curve(&self.job)?;
         let (curve, _) = read_curve(&options.along, options.round_mm, in_space.as_ref())?;
         let height_mm = options.width_mm.unwrap_or(DEFAULT_WIDTH_MM);
         let half = 0.5 * height_mm;
@@ -48,12 +48,14 @@ impl Strip {
         let in_space = in_space.map(|curve| space::space_map(&self.job, curve, height_mm)).transpose()?;
         let planned = Topology { components: 1, holes: u32::from(is_closed), closed_pattern: is_closed };
         let outline = outline(length_mm, half, is_closed);
-        let part = Part::new(&outline, &map, planned, chord_mm * MAP_SHARE).map_err(|error| match error {
-            PartError::Job(error) => error,
-            PartError::Untrue(fault) => {
-                JobError::Outline { components: 1, holes: usize::from(is_closed), fault }
-            }
-        })?;
+        let part = Part::new(&outline, &map, Sides::Free, planned, chord_mm * MAP_SHARE).map_err(
+            |error| match error {
+                PartError::Job(error) => error,
+                PartError::Untrue(fault) => {
+                    JobError::Outline { components: 1, holes: usize::from(is_closed), fault }
+                }
+            },
+        )?;
         match &in_space {
             Some(map) => space::solid(&part, map, chord_mm),
             None => options.print.solid(&part.region, options.thickness_mm, chord_mm, &mut Vec::new()),
