@@ -78,7 +78,7 @@ const LIBRARIES: [(&str, &[&str]); 18] = [
     ("svgtypes", &["src/exemplar"]),
     ("simplecss", &["src/exemplar"]),
     ("tempfile", &["src/export/staged.rs"]),
-    ("toml", &["src/fabricate/workshop.rs", "src/cli/preset.rs"]),
+    ("toml", &["src/fabricate/workshop.rs", "src/cli/preset.rs", "src/cli/scene"]),
     ("zip", &["src/export/threemf.rs", "src/verify/threemf.rs"]),
     ("robust", &["src/verify/crossings.rs", "src/domain/surface/exact.rs"]),
     ("clap", &["src/cli"]),

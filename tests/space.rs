@@ -169,7 +169,7 @@ proptest! {
         let job = BandBuilder::new(format!("fixtures/exemplars/{exemplar}.svg"), along)
             .width_mm(width)
             .components(1)
-            .space(SpaceOptions { gap_mm: None, twist })
+            .space(SpaceOptions { twist, ..SpaceOptions::default() })
             .build()
             .unwrap();
         let band = match job.run(&mut |_| {}) {

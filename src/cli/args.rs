@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+use super::build::BuildArguments;
 use super::laser::LaserArgs;
 use super::make::MakeArgs;
 use super::picture::PictureArgs;
@@ -41,6 +42,9 @@ pub(super) enum Command {
     /// Extrude any SVG, as it is, to a verified solid, or turn it into cut lines
     #[command(after_help = EXTRUDE_HELP)]
     Extrude(Box<ExtrudeArguments>),
+    /// Build a scene: several parts in their places, joined into one solid
+    #[command(after_help = super::build::HELP)]
+    Build(BuildArguments),
     /// Count components and holes (SVG, DXF) or shells and genus (STL, 3MF, OBJ) of a file, and check them
     #[command(after_help = VERIFY_HELP)]
     Verify(VerifyArguments),

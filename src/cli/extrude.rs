@@ -13,6 +13,23 @@ pub(super) fn run(arguments: &ExtrudeArguments) -> Result<ExitCode, CliError> {
     let outputs: Vec<Output> =
         arguments.output.iter().map(|path| output(path, Format::Stl)).collect::<Result<_, _>>()?;
     refuse_json_beside(arguments.json, &outputs)?;
+    let (making, bridges) = making(arguments)?;
+    let progress = Progress::new(arguments.quiet, outputs.iter().map(Output::target));
+    let made = extrude(&arguments.file, &making, bridges, &outputs, &mut |stage| progress.show(stage))?;
+    drop(progress);
+    if arguments.json {
+        print_json(&made)?;
+    }
+    if !arguments.quiet {
+        say_made(&made);
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// How the drawing is to be made, and its bridges.
+pub(super) fn making(
+    arguments: &ExtrudeArguments,
+) -> Result<(ExtrudeMaking, Option<ExtrudeBridges>), CliError> {
     let made = arguments.part.make.made(&arguments.part.tolerances)?;
     let making = ExtrudeMaking {
         thickness_mm: made.thickness_mm,
@@ -28,16 +45,7 @@ pub(super) fn run(arguments: &ExtrudeArguments) -> Result<ExitCode, CliError> {
         components: arguments.components.and_then(|count| count.0),
         holes: arguments.holes.and_then(|count| count.0),
     });
-    let progress = Progress::new(arguments.quiet, outputs.iter().map(Output::target));
-    let made = extrude(&arguments.file, &making, bridges, &outputs, &mut |stage| progress.show(stage))?;
-    drop(progress);
-    if arguments.json {
-        print_json(&made)?;
-    }
-    if !arguments.quiet {
-        say_made(&made);
-    }
-    Ok(ExitCode::SUCCESS)
+    Ok((making, bridges))
 }
 
 fn say_made(made: &ExtrudeReport) {

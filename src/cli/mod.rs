@@ -14,6 +14,7 @@ macro_rules! say {
 }
 
 mod args;
+mod build;
 mod extrude;
 mod interrupt;
 mod laser;
@@ -24,6 +25,7 @@ mod print;
 mod progress;
 mod rect;
 mod run;
+mod scene;
 mod schema;
 mod shell;
 mod surface;

@@ -41,7 +41,7 @@ pub(super) enum PresetError {
     Value { file: PathBuf, line: usize, key: String, found: &'static str, wanted: &'static str },
 }
 
-fn did_you_mean(suggestion: Option<&str>) -> String {
+pub(super) fn did_you_mean(suggestion: Option<&str>) -> String {
     suggestion.map_or_else(String::new, |known| format!("; did you mean {known}?"))
 }
 
@@ -134,19 +134,17 @@ impl<'c> Preset<'c, '_> {
         let name = key.get_ref().as_ref();
         let known = || self.command.get_arguments().filter(|arg| arg.get_id() != OPTION);
         let Some(arg) = known().find(|arg| name_of(arg) == name) else {
-            let near = known().map(|arg| (strsim::jaro_winkler(name, name_of(arg)), name_of(arg)));
-            let nearest = near.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(likeness, _)| *likeness > 0.8);
             return Err(PresetError::Unknown {
                 file: self.file.to_owned(),
-                line: self.line(key.span().start),
+                line: line_of(self.text, key.span().start),
                 command: self.command.get_name().to_owned(),
                 key: name.to_owned(),
-                suggestion: nearest.map(|(_, name)| name.to_owned()),
+                suggestion: nearest(name, known().map(name_of)),
             });
         };
         let words = words(arg, value.get_ref()).map_err(|wanted| PresetError::Value {
             file: self.file.to_owned(),
-            line: self.line(value.span().start),
+            line: line_of(self.text, value.span().start),
             key: name.to_owned(),
             found: value.get_ref().type_str(),
             wanted,
@@ -154,11 +152,18 @@ impl<'c> Preset<'c, '_> {
         options.insert(arg.get_id().as_str(), PresetOption { arg, words });
         Ok(())
     }
+}
 
-    /// The line of a byte, from 1.
-    fn line(&self, at: usize) -> usize {
-        1 + self.text.as_bytes()[..at].iter().filter(|&&byte| byte == b'\n').count()
-    }
+/// The name among `known` that is most like `name`, if one is.
+pub(super) fn nearest<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
+    let near = known.into_iter().map(|known| (strsim::jaro_winkler(name, known), known));
+    let nearest = near.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(likeness, _)| *likeness > 0.8);
+    nearest.map(|(_, name)| name.to_owned())
+}
+
+/// The line of a byte, from 1.
+pub(super) fn line_of(text: &str, at: usize) -> usize {
+    1 + text.as_bytes()[..at].iter().filter(|&&byte| byte == b'\n').count()
 }
 
 /// What an option is called in a preset: as on the command line without dashes, or, where it has no name there, as in its
@@ -168,7 +173,7 @@ pub(super) fn name_of(arg: &Arg) -> &str {
 }
 
 /// An option as it would be typed, or what its value should have been.
-fn words(arg: &Arg, value: &DeValue<'_>) -> Result<Vec<OsString>, &'static str> {
+pub(super) fn words(arg: &Arg, value: &DeValue<'_>) -> Result<Vec<OsString>, &'static str> {
     let word = |text: &str| match arg.get_long() {
         Some(long) => OsString::from(format!("--{long}={text}")),
         None => OsString::from(text),

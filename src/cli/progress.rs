@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
-use crate::job::{Stage, Target};
+use crate::job::{Stage, Step, Target};
 
 /// The line that is shown, for whatever ends the program beside its ordinary way.
 static SHOWN: Mutex<Option<ProgressBar>> = Mutex::new(None);
@@ -54,20 +54,36 @@ impl Progress {
 
     /// Shows that a stage has begun.
     pub(super) fn show(&self, stage: Stage) {
-        self.line.set_message(match stage {
-            Stage::Read => "reading the exemplar",
-            Stage::Slice => "cutting it into pieces",
-            Stage::Solve => "searching for a sequence",
-            Stage::Fit => "fitting the pieces",
-            Stage::Map => "mapping along the curve",
-            Stage::Bridge => "laying bridges",
-            Stage::Enforce => "thickening and widening",
-            Stage::Svg => "drawing",
-            Stage::CutLines => "laying out the cuts",
-            Stage::Stl => "building the solid",
-            Stage::Png => "painting the picture",
-            Stage::Verify => "reading the files again and counting",
-        });
+        self.line.set_message(words(stage));
+    }
+
+    /// Shows what a scene is at.
+    pub(super) fn show_step(&self, step: Step<'_>) {
+        match step {
+            Step::Part(name, stage) => self.line.set_message(format!("{name}: {}", words(stage))),
+            Step::Place => self.line.set_message("placing"),
+            Step::Join => self.line.set_message("looking at the joints"),
+            Step::Unite => self.line.set_message("uniting"),
+            Step::Files(stage) => self.show(stage),
+        }
+    }
+}
+
+/// What is done in a stage.
+fn words(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Read => "reading the exemplar",
+        Stage::Slice => "cutting it into pieces",
+        Stage::Solve => "searching for a sequence",
+        Stage::Fit => "fitting the pieces",
+        Stage::Map => "mapping along the curve",
+        Stage::Bridge => "laying bridges",
+        Stage::Enforce => "thickening and widening",
+        Stage::Svg => "drawing",
+        Stage::CutLines => "laying out the cuts",
+        Stage::Stl => "building the solid",
+        Stage::Png => "painting the picture",
+        Stage::Verify => "reading the files again and counting",
     }
 }
 

@@ -11,7 +11,7 @@ use crate::job::{BandBuilder, Output, RectBuilder, RectJob, RectReport};
 pub(super) fn run_rect(arguments: &RectArguments) -> Result<ExitCode, CliError> {
     let (outputs, report_target) = destinations(&arguments.pattern)?;
     let quiet = arguments.pattern.quiet;
-    let job = rect_job(arguments)?;
+    let job = job(arguments, |band| band)?;
     job.check_outputs(&outputs, report_target.as_ref())?;
     let progress = Progress::new(quiet, outputs.iter().map(Output::target).chain(&report_target));
     let rect = job.run(&mut |stage| progress.show(stage))?;
@@ -23,8 +23,11 @@ pub(super) fn run_rect(arguments: &RectArguments) -> Result<ExitCode, CliError> 
     Ok(ExitCode::SUCCESS)
 }
 
-/// The job that the arguments ask for.
-pub(super) fn rect_job(arguments: &RectArguments) -> Result<RectJob, CliError> {
+/// The rectangle that is asked for, with what `adapt` makes of its options.
+pub(super) fn job(
+    arguments: &RectArguments,
+    adapt: impl FnOnce(BandBuilder) -> BandBuilder,
+) -> Result<RectJob, CliError> {
     // The curve of a rectangle is its own matter.
     let line = CurveSpec::Line { length_mm: 1.0 };
     let mut band = with_pattern(BandBuilder::new(&arguments.exemplar, line), &arguments.pattern)?;
@@ -36,7 +39,7 @@ pub(super) fn rect_job(arguments: &RectArguments) -> Result<RectJob, CliError> {
         (_, _, Some(size)) => RectBuilder::new(&arguments.exemplar, size),
         _ => unreachable!("the parser asks for a size, or a roll with its height"),
     };
-    Ok(rect.tile(arguments.tile).drape(arguments.drape.clone()).options(|_| band).build()?)
+    Ok(rect.tile(arguments.tile).drape(arguments.drape.clone()).options(|_| adapt(band)).build()?)
 }
 
 fn say_rect(report: &RectReport, roll: Option<Roll>) {

@@ -10,7 +10,8 @@ use super::args::{
 };
 use super::laser::say_cuts;
 use super::progress::Progress;
-use super::{extrude, rect, schema, shell, surface, verify};
+use super::scene::SceneError;
+use super::{build, extrude, rect, schema, shell, surface, verify};
 use crate::analysis::{Analysis, AnalysisError};
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
 use crate::export;
@@ -28,6 +29,8 @@ use crate::verify::{CertificateError, CertificateReport, Mismatch, TilingFault, 
 pub(super) enum CliError {
     #[error(transparent)]
     Job(#[from] JobError),
+    #[error(transparent)]
+    Scene(#[from] SceneError),
     #[error("{file}: {error}")]
     Unreadable { file: String, error: std::io::Error },
     #[error("{file}: {error}")]
@@ -58,7 +61,8 @@ impl CliError {
     pub(super) fn exit_code(&self) -> u8 {
         match self {
             Self::Job(job) => job.exit_code(),
-            Self::Unreadable { .. }
+            Self::Scene(_)
+            | Self::Unreadable { .. }
             | Self::Unjudged { .. }
             | Self::Uncertified { .. }
             | Self::UnknownKind { .. }
@@ -77,6 +81,7 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, CliError> {
         Command::Surface(arguments) => surface::run(&arguments),
         Command::Analyze(analyze) => run_analyze(&analyze),
         Command::Extrude(arguments) => extrude::run(&arguments),
+        Command::Build(arguments) => build::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
         Command::Schema => shell::print(schema::schema().as_bytes()).map(|()| ExitCode::SUCCESS),
         Command::Completions(arguments) => shell::completions(&arguments).map(|()| ExitCode::SUCCESS),
@@ -193,13 +198,13 @@ pub(super) fn destinations(arguments: &PatternArguments) -> Result<(Vec<Output>,
     Ok((outputs, report_target))
 }
 
-fn builder(arguments: &BandArguments) -> Result<BandBuilder, CliError> {
+pub(super) fn builder(arguments: &BandArguments) -> Result<BandBuilder, CliError> {
     let builder = BandBuilder::new(&arguments.exemplar, arguments.along.clone())
         .closed_pattern(arguments.closed_pattern)
         .choice(choice(arguments)?)
         .contact_sheet(!arguments.no_contact_sheet)
         .counted(arguments.pattern.report.is_some())
-        .space(SpaceOptions { gap_mm: arguments.gap, twist: arguments.twist.clone() });
+        .space(SpaceOptions { gap_mm: arguments.gap, twist: arguments.twist.clone(), points: None });
     let builder = match arguments.round {
         Some(radius) => builder.round_mm(radius),
         None => builder,

@@ -12,7 +12,7 @@ use serde_json::{Map, Value, json};
 use super::args::Arguments;
 use super::preset::name_of;
 use crate::analysis::Analysis;
-use crate::job::{BandReport, ExtrudeReport, RectReport, View, Workshop};
+use crate::job::{BandReport, ExtrudeReport, RectReport, SceneReport, View, Workshop};
 use crate::verify::{CertificateReport, CutReport, MeshReport, SvgReport};
 
 /// The schema, as a JSON text.
@@ -27,6 +27,7 @@ pub(super) fn schema() -> String {
         "band": report::<BandReport>(generator),
         "rect": report::<RectReport>(generator),
         "extrude": report::<ExtrudeReport>(generator),
+        "build": report::<SceneReport>(generator),
         "analyze": report::<Analysis>(generator),
         "verify-svg": report::<SvgReport>(generator),
         "verify-cut-lines": report::<CutReport>(generator),

@@ -30,7 +30,10 @@ const THIN_STEPS: [f64; 3] = [16.0, 64.0, 256.0];
 /// [`FabricateError::Rounding`] where the result is finer than the floats of a mesh file; [`FabricateError::Facets`] where
 /// solids touch along an edge or in a corner only; [`FabricateError::Engine`].
 pub fn union(solids: &[&Solid]) -> Result<Solid, FabricateError> {
-    let mut parts = solids.iter().map(|solid| manifold(solid)).collect::<Result<Vec<_>, _>>()?;
+    united(solids.iter().map(|solid| manifold(solid)).collect::<Result<_, _>>()?)
+}
+
+fn united(mut parts: Vec<Manifold>) -> Result<Solid, FabricateError> {
     // The two smallest each time, so that no large one is gone through over and over.
     while parts.len() > 1 {
         parts.sort_by_key(|part| std::cmp::Reverse(part.num_tri()));
@@ -56,6 +59,79 @@ pub fn intersection(a: &Solid, b: &Solid) -> Result<Solid, FabricateError> {
     of_two(a, b, OpType::Intersect)
 }
 
+/// What two solids have in common.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Overlap {
+    /// The volume of all of it, in cubic millimetres.
+    pub volume_mm3: f64,
+    /// How wide the widest piece of it is: twice its volume over its surface. Of a plate that is its thickness, and of no
+    /// convex body more than what a ball in it measures across.
+    pub width_mm: f64,
+    /// The middle of the box around that piece, in millimetres.
+    pub position_mm: DVec3,
+}
+
+/// A solid in some place, ready for several operations. Corners are 64-bit floats there, and are rounded only in what comes of
+/// it.
+#[derive(Clone)]
+pub struct Body(Manifold);
+
+impl Body {
+    /// `solid` where `motion` brings it; a motion that mirrors turns the facets.
+    ///
+    /// # Errors
+    /// [`FabricateError::Motion`] for one that flattens the solid; [`FabricateError::Engine`].
+    pub fn new(solid: &Solid, motion: &DAffine3) -> Result<Self, FabricateError> {
+        let volume = motion.matrix3.determinant();
+        if !volume.is_normal() || !motion.is_finite() {
+            return Err(FabricateError::Motion);
+        }
+        let place = |p: [f32; 3]| motion.transform_point3(DVec3::from_array(p.map(f64::from)));
+        let turn = |[a, b, c]: [u32; 3]| if volume < 0.0 { [a, c, b] } else { [a, b, c] };
+        let triangles = solid.triangles().iter().map(|&t| turn(t)).collect();
+        imported(solid.vertices().iter().map(|&p| place(p)), triangles).map(Self)
+    }
+
+    /// The least and the greatest coordinates in millimetres.
+    pub fn bounds_mm(&self) -> [DVec3; 2] {
+        let bounds = self.0.bounding_box();
+        [bounds.min, bounds.max].map(|p| DVec3::new(p.x, p.y, p.z))
+    }
+
+    /// What both have in common, measured; `None` where it has no volume.
+    ///
+    /// # Errors
+    /// [`FabricateError::Engine`].
+    pub fn overlap(&self, other: &Self) -> Result<Option<Overlap>, FabricateError> {
+        let both = checked(self.0.boolean_with_engine(&other.0, OpType::Intersect, BooleanEngine::Exact))?;
+        let pieces = both.decompose();
+        let volume_mm3: f64 = pieces.iter().map(Manifold::volume).sum();
+        let width = |piece: &Manifold| 2.0 * piece.volume() / piece.surface_area().max(f64::MIN_POSITIVE);
+        let widest = pieces.iter().max_by(|p, q| width(p).total_cmp(&width(q)));
+        Ok(widest.filter(|piece| piece.volume() > 0.0).map(|piece| {
+            let middle = piece.bounding_box().center();
+            let position_mm = DVec3::new(middle.x, middle.y, middle.z);
+            Overlap { volume_mm3, width_mm: width(piece), position_mm }
+        }))
+    }
+
+    /// Everything that is in any of `bodies`, as [`union`] has it.
+    ///
+    /// # Errors
+    /// As [`union`].
+    pub fn union(bodies: &[Self]) -> Result<Solid, FabricateError> {
+        united(bodies.iter().map(|body| body.0.clone()).collect())
+    }
+
+    /// It as a solid in 32-bit floats.
+    ///
+    /// # Errors
+    /// As [`union`].
+    pub fn solid(&self) -> Result<Solid, FabricateError> {
+        rounded(&self.0)
+    }
+}
+
 impl Solid {
     /// The solid in another place: every point p goes to `motion` (p), rounded to 32-bit floats. A motion that mirrors turns
     /// the facets, so that they face outwards again.
@@ -63,14 +139,22 @@ impl Solid {
     /// # Errors
     /// [`FabricateError::Motion`] for one that flattens the solid; else as [`union`].
     pub fn moved(&self, motion: &DAffine3) -> Result<Self, FabricateError> {
-        let volume = motion.matrix3.determinant();
-        if !volume.is_normal() || !motion.is_finite() {
-            return Err(FabricateError::Motion);
+        match *motion == DAffine3::IDENTITY {
+            true => Ok(self.clone()),
+            false => Body::new(self, motion)?.solid(),
         }
-        let place = |p: [f32; 3]| motion.transform_point3(DVec3::from_array(p.map(f64::from)));
-        let turn = |[a, b, c]: [u32; 3]| if volume < 0.0 { [a, c, b] } else { [a, b, c] };
-        let triangles = self.triangles().iter().map(|&t| turn(t)).collect();
-        rounded(&imported(self.vertices().iter().map(|&p| place(p)), triangles)?)
+    }
+
+    /// The solid with fewer facets: edges go where the surface stays within `tolerance_mm` of where it was. What could not be
+    /// rounded afterwards stays as it is.
+    ///
+    /// # Errors
+    /// [`FabricateError::Engine`].
+    pub fn with_fewer_facets(&self, tolerance_mm: f64) -> Result<Self, FabricateError> {
+        let simpler = manifold(self)?.simplify(tolerance_mm);
+        let is_same =
+            |solid: &Self| solid.shells().len() == self.shells().len() && solid.genus() == self.genus();
+        Ok(rounded(&simpler).ok().filter(is_same).unwrap_or_else(|| self.clone()))
     }
 
     /// The total genus of all shells: the number of tunnels.

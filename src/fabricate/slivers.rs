@@ -94,6 +94,10 @@ impl Mesh {
 
     /// Moves the vertex `gone` onto `kept`, its neighbour.
     fn merged(&mut self, gone: u32, kept: u32, thin_mm: f64) -> Option<Vec<u32>> {
+        // Two corners of three facets each are those of a tetrahedron, which would be left without volume.
+        if [gone, kept].iter().all(|&v| self.around[v as usize].len() == 3) {
+            return None;
+        }
         // More than two neighbours in common would leave an edge with four facets.
         let near = self.neighbours(gone);
         if self.neighbours(kept).iter().filter(|v| near.contains(v)).count() != 2 {

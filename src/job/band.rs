@@ -331,7 +331,7 @@ impl Band {
 }
 
 /// The curve in the plane: for one in space, the line that stands for it.
-fn read_curve(
+pub(super) fn read_curve(
     spec: &CurveSpec,
     round_mm: Option<f64>,
     in_space: Option<&SpaceCurve>,

@@ -106,6 +106,26 @@ pub enum JobError {
         /// Why.
         error: VerifyError,
     },
+    /// A part of a scene.
+    #[error("part {part}: {error}")]
+    Part {
+        /// Its name.
+        part: String,
+        /// What is wrong with it.
+        error: Box<JobError>,
+    },
+    /// Two parts of a scene that are to fuse do not.
+    #[error("the joint of {first} and {second} does not hold: {found}; {remedy}. Nothing was written")]
+    Joint {
+        /// The copy of the one part.
+        first: String,
+        /// The other part, or its copy.
+        second: String,
+        /// What is there instead.
+        found: String,
+        /// What would help.
+        remedy: String,
+    },
     /// A tile does not join its copies.
     #[error("the tile failed verification: {0}. Nothing was written")]
     Tiling(#[from] TilingFault),
@@ -171,7 +191,8 @@ impl JobError {
                 | FabricateError::Taper { .. }
                 | FabricateError::TooManyTriangles { .. }
                 | FabricateError::TooHigh { .. }
-                | FabricateError::Bed { .. },
+                | FabricateError::Bed { .. }
+                | FabricateError::Motion,
             ) => 2,
             Self::Fabricate(FabricateError::Inset { .. }) => 3,
             Self::Outline { .. }
@@ -179,6 +200,8 @@ impl JobError {
             | Self::Fabricate(_)
             | Self::Unjudged { .. }
             | Self::Mismatch { .. } => 4,
+            Self::Part { error, .. } => error.exit_code(),
+            Self::Joint { .. } => 3,
             Self::Fit(_) => 1,
         }
     }

@@ -20,7 +20,7 @@ use super::small;
 use super::stage::{Clock, Stage};
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
 use crate::export::{self, SvgOptions};
-use crate::fabricate::{Bridge, Counts, Material};
+use crate::fabricate::{Bridge, Counts, Material, Solid};
 use crate::planar::{GridPoint, Region, Tolerances};
 use crate::topology::{Goal, Wanted};
 use crate::verify::{self, Expected, MeshReport, Mismatch, NarrowPlaces, SvgReport};
@@ -134,6 +134,19 @@ pub fn extrude(
 ) -> Result<ExtrudeReport, JobError> {
     let inputs: Vec<&Path> = std::iter::once(file).chain(making.laser.engrave.as_deref()).collect();
     Output::check(outputs.iter().map(Output::target), &inputs)?;
+    let (report, pending, _) = extruded(file, making, bridges, outputs, progress)?;
+    persist(pending, None)?;
+    Ok(report)
+}
+
+/// The same with the outputs on their way to their names; and the solid, if some output asked for it.
+pub(super) fn extruded(
+    file: &Path,
+    making: &ExtrudeMaking,
+    bridges: Option<ExtrudeBridges>,
+    outputs: &[Output],
+    progress: &mut dyn FnMut(Stage),
+) -> Result<(ExtrudeReport, Vec<Pending>, Option<Solid>), JobError> {
     making.check(outputs)?;
     let ExtrudeMaking { tolerances, material, print, laser, picture, .. } = making;
     let (thickness_mm, enforce) = (making.thickness_mm, making.enforce);
@@ -247,8 +260,7 @@ pub fn extrude(
     notes.extend_from_slice(&raised.notes);
     notes.extend(small::warnings(&region, tolerances, outputs, narrowest_mm));
     notes.extend(blind::notes(&narrow_places, tolerances, !enforce));
-    persist(pending, None)?;
-    Ok(ExtrudeReport {
+    let report = ExtrudeReport {
         schema_version: 1,
         input: InputReport { file: file.display().to_string(), sha256: drawing.sha256().to_owned() },
         components: region.components(),
@@ -265,7 +277,8 @@ pub fn extrude(
         files: outputs.iter().map(|output| output.target().to_string()).collect(),
         notes,
         times: clock.times,
-    })
+    };
+    Ok((report, pending, raised.solid().cloned()))
 }
 
 /// The widths that were asked for are those of what is kept, whatever files are made of it.

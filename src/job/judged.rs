@@ -156,6 +156,14 @@ impl Band {
         Ok(ground.map(|ground| ground.merged_counts(self.counts)).transpose()?.flatten())
     }
 
+    /// The part as a solid, made now if it was not before.
+    pub(super) fn into_solid(self) -> Result<Solid, JobError> {
+        match self.raised.as_ref().and_then(Raised::solid) {
+            Some(solid) => Ok(solid.clone()),
+            None => self.solid(&mut Vec::new()),
+        }
+    }
+
     /// The solid and its files for those of `outputs` that hold it, and for its picture and its volume.
     pub(super) fn raised(&self, outputs: &[Output], clock: &mut Clock<'_>) -> Result<Raised, JobError> {
         let options = &self.job.options;

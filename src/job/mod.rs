@@ -59,6 +59,7 @@ mod rect_tile;
 mod recut;
 mod refusal;
 mod report;
+mod scene;
 mod several;
 mod small;
 mod space;
@@ -85,6 +86,7 @@ pub use making::{EnforcedReport, Quantities};
 pub use output::{Format, Output, Target};
 pub use picture::{PictureOptions, Show};
 pub use plan::{DEFAULT_MEMORY_LIMIT, Plan, PlanError, PlanOptions, SEED_SPREAD, plan};
+pub use points::Points;
 pub use print::PrintOptions;
 pub use rect::Rect;
 pub use rect_builder::{RectBuilder, RectJob};
@@ -93,6 +95,10 @@ pub use recut::recut;
 pub use report::{
     BandReport, DroppedCutReport, FallbackReport, FlatPattern, InputReport, MadeReport, SeamReport,
     StageTime, StitchReport,
+};
+pub use scene::{
+    Axis, CopyReport, Joint, JointReport, Making, PartReport, Placement, Repeat, Scene, ScenePart,
+    SceneReport, Step, Strip,
 };
 pub use several::write_numbered;
 pub use space::SpaceOptions;

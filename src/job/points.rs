@@ -13,10 +13,11 @@ const SAME_MM: f64 = 1e-3;
 
 /// A polyline in millimetres.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Points {
-    pub(super) points: Vec<DVec3>,
+pub struct Points {
+    /// Where it goes through, without the first point again at the end.
+    pub points: Vec<DVec3>,
     /// Whether the last point is followed by the first.
-    pub(super) is_closed: bool,
+    pub is_closed: bool,
 }
 
 /// Reads an OBJ (vertices and one polyline, or vertices in their order) or else a table with x, y and z in each row, apart by commas,

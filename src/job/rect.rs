@@ -11,7 +11,7 @@
 use super::band::Band;
 use super::error::JobError;
 use super::notes::of_first_pass;
-use super::output::{Output, Target, persist};
+use super::output::{Output, Pending, Target, persist};
 use super::plan::Plan;
 use super::rect_builder::RectJob;
 use super::rect_report::{DirectionReport, RectReport};
@@ -19,6 +19,7 @@ use super::rect_rows::Made;
 use super::rect_search::{Found, search};
 use super::report::MadeReport;
 use super::stage::{Clock, Stage};
+use crate::fabricate::Solid;
 use crate::planar::Region;
 use crate::topology::{Topology, Wanted};
 use crate::verify::Tiling;
@@ -73,14 +74,29 @@ impl Rect {
         progress: &mut dyn FnMut(Stage),
     ) -> Result<RectReport, JobError> {
         self.band.job.check_outputs(outputs, report_file)?;
+        let (report, pending) = self.deliver(outputs, progress)?;
+        persist(pending, report_file.map(|target| (target, report.to_json())))?;
+        Ok(report)
+    }
+
+    /// Every output, encoded, read again and counted, on its way to its name; and the report.
+    pub(super) fn deliver(
+        &self,
+        outputs: &[Output],
+        progress: &mut dyn FnMut(Stage),
+    ) -> Result<(RectReport, Vec<Pending>), JobError> {
         let (found, pending) = self.band.deliver(outputs, progress)?;
         let mut report = self.report.clone();
         (report.components, report.holes) = (found.components, found.holes);
         report.chord_mm = found.chord_mm;
         let notes = report.made.notes.into_iter().chain(found.made.notes).collect();
         report.made = MadeReport { notes, ..found.made };
-        persist(pending, report_file.map(|target| (target, report.to_json())))?;
-        Ok(report)
+        Ok((report, pending))
+    }
+
+    /// The part as a solid.
+    pub(super) fn into_solid(self) -> Result<Solid, JobError> {
+        self.band.into_solid()
     }
 }
 

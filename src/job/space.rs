@@ -8,7 +8,7 @@ use glam::DVec2;
 use super::builder::BandJob;
 use super::error::JobError;
 use super::part::Part;
-use super::points::read_points;
+use super::points::{Points, read_points};
 use super::print::PrintOptions;
 use crate::domain::{CurveSpec, PlanarCurve, Relief, SpaceCurve, SpaceMap, Twist};
 use crate::fabricate::{self, Solid};
@@ -27,6 +27,8 @@ pub struct SpaceOptions {
     pub gap_mm: Option<f64>,
     /// How the band is turned about its curve.
     pub twist: Option<Twist>,
+    /// The points of a curve that is named by a file, where they stand in the job that names it and not in a table of their own.
+    pub points: Option<Points>,
 }
 
 /// The curve in space that a specification names, if it names one.
@@ -36,7 +38,7 @@ pub struct SpaceOptions {
 pub(super) fn read_space_curve(job: &BandJob) -> Result<Option<SpaceCurve>, JobError> {
     let options = &job.options;
     let middle = |inner_mm: f64| 0.5 * (inner_mm + options.thickness_mm);
-    let SpaceOptions { gap_mm, twist } = &options.space;
+    let SpaceOptions { gap_mm, twist, points } = &options.space;
     let refuse = |option: &'static str, found: &str, wanted: &str| {
         Err(JobError::Option { option, found: found.to_owned(), wanted: wanted.to_owned() })
     };
@@ -60,7 +62,7 @@ pub(super) fn read_space_curve(job: &BandJob) -> Result<Option<SpaceCurve>, JobE
             SpaceCurve::helix(middle(*inner_mm), *pitch_mm, *turns)?
         }
         CurveSpec::Points { file } => {
-            let read = read_points(file)?;
+            let read = points.clone().map_or_else(|| read_points(file), Ok)?;
             SpaceCurve::through(&read.points, read.is_closed)?
         }
         CurveSpec::Model { .. } => {
