@@ -84,7 +84,7 @@ pub(super) enum Mode {
 pub(super) fn run(arguments: &SurfaceArguments) -> Result<ExitCode, CliError> {
     let (outputs, report_target) = destinations(&arguments.pattern)?;
     let quiet = arguments.pattern.quiet;
-    let job = job(arguments)?;
+    let job = job(arguments, |band| band)?;
     job.check_outputs(&outputs, report_target.as_ref())?;
     let progress = Progress::new(quiet, outputs.iter().map(Output::target).chain(&report_target));
     let bands = job.run_all_for(&outputs, &mut |stage| progress.show(stage))?;
@@ -96,8 +96,11 @@ pub(super) fn run(arguments: &SurfaceArguments) -> Result<ExitCode, CliError> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The job that the arguments ask for.
-pub(super) fn job(arguments: &SurfaceArguments) -> Result<BandJob, CliError> {
+/// The job that the arguments ask for, with what else is `set`.
+pub(super) fn job(
+    arguments: &SurfaceArguments,
+    set: impl FnOnce(BandBuilder) -> BandBuilder,
+) -> Result<BandJob, CliError> {
     let options = SurfaceOptions {
         model: arguments.mesh.clone(),
         route: match (&arguments.through, &arguments.curve, arguments.around) {
@@ -122,7 +125,7 @@ pub(super) fn job(arguments: &SurfaceArguments) -> Result<BandJob, CliError> {
         Some(seed) => builder.choice(Choice::Drawn { seed, count: 1, temperature: DEFAULT_TEMPERATURE }),
         None => builder,
     };
-    Ok(with_pattern(builder, &arguments.pattern)?.build()?)
+    Ok(set(with_pattern(builder, &arguments.pattern)?).build()?)
 }
 
 /// Points whose last is their first are closed.

@@ -15,12 +15,13 @@ use crate::cli::args::{Arguments, BandArguments, ExtrudeArguments, RectArguments
 use crate::cli::make::MakeArgs;
 use crate::cli::preset::{name_of, words};
 use crate::cli::run::CliError;
+use crate::cli::surface::{self, SurfaceArguments};
 use crate::cli::{extrude, rect, run, values};
 use crate::domain::{CurveSpec, RectSize, Twist};
 use crate::job::{Making, Points, PrintOptions, SpaceOptions, Strip};
 
 /// What a part can be made from. Each key has the file, the curve or the size that it begins with.
-pub(super) const KINDS: [&str; 6] = ["band", "rect", "extrude", "strip", "plate", "model"];
+pub(super) const KINDS: [&str; 7] = ["band", "rect", "surface", "extrude", "strip", "plate", "model"];
 
 /// Keys of a part that are no options of its command.
 pub(super) const OWN: [&str; 4] = ["place", "repeat", "points", "closed"];
@@ -272,6 +273,13 @@ fn made(
             let made = pattern.make.made(&pattern.tolerances)?;
             let print = no_command(pattern.print.options());
             (Making::Rect(Box::new(rect::job(&arguments, |band| band.print(print))?)), made.min_feature_mm)
+        }
+        "surface" => {
+            let arguments = SurfaceArguments::from_arg_matches(&matches).expect(parsed);
+            let pattern = &arguments.pattern.part;
+            let made = pattern.make.made(&pattern.tolerances)?;
+            let print = no_command(pattern.print.options());
+            (Making::Band(Box::new(surface::job(&arguments, |band| band.print(print))?)), made.min_feature_mm)
         }
         "extrude" => {
             let arguments = ExtrudeArguments::from_arg_matches(&matches).expect(parsed);
