@@ -207,7 +207,7 @@ pub(super) struct RectArguments {
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_negative_numbers = true, requires = "roll", conflicts_with = "size")]
     pub(super) height: Option<f64>,
     /// Lay the rectangle over a height field that is stretched over it: a table of heights in mm, FILE.csv, or a picture whose white is
-    /// so high, FILE.png,height=20mm. Its sizes are those seen from above; what is rolled stands out by it
+    /// so high, FILE.png,height=20mm. The sheet is a smooth surface led by the heights: between its neighbours, a single peak is rounded. Its sizes are those seen from above; what is rolled stands out by it
     #[arg(long, value_name = "FILE", value_parser = values::drape)]
     pub(super) drape: Option<Drape>,
     /// Make opposite sides match, so that copies join; the page is the tile, without a margin

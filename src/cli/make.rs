@@ -53,6 +53,11 @@ pub(super) struct Made {
 }
 
 impl MakeArgs {
+    /// Whether a thickness was typed.
+    pub(super) fn has_thickness(&self) -> bool {
+        self.thickness.is_some()
+    }
+
     /// All numbers, from the process and the options.
     pub(super) fn made(&self, tolerances: &ToleranceArguments) -> Result<Made, CliError> {
         let workshop = self.workshop()?;

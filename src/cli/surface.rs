@@ -10,9 +10,12 @@ use super::progress::Progress;
 use super::run::{CliError, destinations, say_band, with_pattern};
 use super::values;
 use crate::job::{
-    BandBuilder, BandJob, Choice, ControlPoints, DEFAULT_TEMPERATURE, Height, Output, Route, SurfaceMode,
-    SurfaceOptions,
+    BandBuilder, BandJob, Choice, ControlPoints, DEFAULT_TEMPERATURE, Height, JobError, Output, Route,
+    SurfaceMode, SurfaceOptions,
 };
+
+/// How far points may be off the model when nothing is said, in millimetres.
+const TOLERANCE_MM: f64 = 1.0;
 
 pub(super) const SURFACE_HELP: &str = "\
 Lengths take mm, cm, in, pt or px (96 to the inch); a bare number is millimetres. Models are in millimetres, z up, and keep
@@ -51,8 +54,9 @@ pub(super) struct SurfaceArguments {
     #[arg(long, value_name = "HEIGHT", group = "route", value_parser = values::height, allow_hyphen_values = true)]
     pub(super) around: Option<Height>,
     /// How far points may be off the model; they are brought onto it
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "1mm", allow_hyphen_values = true)]
-    pub(super) tolerance: f64,
+    /// [default: 1mm]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, conflicts_with = "around", allow_hyphen_values = true)]
+    pub(super) tolerance: Option<f64>,
     /// What becomes of the band
     #[arg(long, value_enum, default_value_t)]
     pub(super) mode: Mode,
@@ -71,7 +75,7 @@ pub(super) struct SurfaceArguments {
 
 #[derive(Debug, Clone, Copy, Default, ValueEnum)]
 pub(super) enum Mode {
-    /// A part of its own, as thick as --thickness, that fits the model
+    /// A part of its own, as thick as --thickness, that fits the model; where the model slopes across the band it is thinner, which is told
     #[default]
     Band,
     /// Standing out from the model by --thickness, in one piece with it
@@ -101,6 +105,13 @@ pub(super) fn job(
     arguments: &SurfaceArguments,
     set: impl FnOnce(BandBuilder) -> BandBuilder,
 ) -> Result<BandJob, CliError> {
+    if matches!(arguments.mode, Mode::Carve) && arguments.pattern.part.make.has_thickness() {
+        return Err(CliError::Job(JobError::Option {
+            option: "--thickness",
+            found: "what is carved is as thick as the wall, or as deep as --depth".to_owned(),
+            wanted: "leave it out, or use --depth".to_owned(),
+        }));
+    }
     let options = SurfaceOptions {
         model: arguments.mesh.clone(),
         route: match (&arguments.through, &arguments.curve, arguments.around) {
@@ -116,7 +127,7 @@ pub(super) fn job(
         },
         shell_mm: arguments.shell,
         depth_mm: arguments.depth,
-        tolerance_mm: arguments.tolerance,
+        tolerance_mm: arguments.tolerance.unwrap_or(TOLERANCE_MM),
     };
     let builder = BandBuilder::on_model(&arguments.exemplar, options)
         .closed_pattern(arguments.closed_pattern)

@@ -80,6 +80,11 @@ fn table(text: &str) -> Result<Heights, String> {
     let (mut values, mut columns) = (Vec::new(), 0);
     for (line, row) in (1..).zip(text.trim_start_matches('\u{feff}').lines()) {
         let row = row.split('#').next().unwrap_or_default();
+        if row.contains(';') && row.contains(',') {
+            return Err(format!(
+                "line {line} has commas and semicolons, so that decimals cannot be told: write 1.5 for 1,5"
+            ));
+        }
         let before = values.len();
         for word in row.split([',', ';', '\t', ' ']).map(str::trim).filter(|word| !word.is_empty()) {
             match word.parse::<f64>() {
@@ -102,10 +107,11 @@ mod tests {
 
     #[test]
     fn tables_are_read_and_faults_have_a_line() {
-        let read = table("# a hill\n0, 1; 2\n\n3 4\t5 # right\n").unwrap();
+        let read = table("# a hill\n0, 1, 2\n\n3 4\t5 # right\n").unwrap();
         assert_eq!((read.columns, read.values.len(), read.are_parts), (3, 6, false));
         assert_eq!(table("1 2\n1 2 3\n").unwrap_err(), "line 2 has 3 heights and those before it 2");
         assert_eq!(table("1 2\n1 x\n").unwrap_err(), "line 2: 'x' is no height in mm");
+        assert!(table("1,5;2,5\n").unwrap_err().contains("1.5 for 1,5"));
         assert!(table("NaN").is_err() && table("1e9").is_err());
     }
 

@@ -2,8 +2,8 @@
 //!
 //! Upright lines and level ones make cells, in each of which the sheet is flat enough. No vertex of the region lies on a line. Wherever the
 //! outline crosses one it gets a vertex, and where two lines cross in the ink there is one too. Along a line, ink begins and ends at the
-//! vertices of the outline in turn. All of it is decided on the grid; where rounding makes two crossings one, no triangulation passes
-//! its check, and the place is an error. Excluded: the solid ([`super::wrap`]).
+//! vertices of the outline at which it comes to the other side. All of it is decided on the grid; where rounding makes two crossings one, no
+//! triangulation passes its check, and the place is an error. Excluded: the solid ([`super::wrap`]).
 
 use super::FabricateError;
 use super::snap::same_counts;
@@ -89,46 +89,83 @@ impl Lines {
 
     /// Vertices and edges along the lines through the ink of a part that was cut.
     pub(super) fn inside(&self, part: &Part) -> Inside {
-        let mut vertices: Vec<GridPoint> = part.contours().flat_map(|c| c.points()).copied().collect();
-        let outline = vertices.len() as u32;
-        let on_line = |lines: &[i64], place: i64| lines.binary_search(&place).is_ok();
+        let outline = Outline::new(part);
+        let mut vertices = outline.vertices.clone();
         let mut edges = Vec::new();
-        let mut on: Vec<u32> =
-            (0..outline).filter(|&v| on_line(&self.upright, vertices[v as usize].x)).collect();
-        on.sort_unstable_by_key(|&v| vertices[v as usize]);
-        // Where level lines cross them.
+        // Where level lines cross upright ones.
         let mut crossings: Vec<u32> = Vec::new();
-        let lines: Vec<&[u32]> =
-            on.chunk_by(|&a, &b| vertices[a as usize].x == vertices[b as usize].x).collect();
-        for line in lines {
-            // The outline crosses the line at each of them: in, out, in, out.
-            for pair in line.chunks_exact(2) {
-                let [from, to] = [pair[0], pair[1]].map(|v| vertices[v as usize]);
-                let mut last = pair[0];
-                for &y in between(&self.level, from.y, to.y) {
-                    let next = vertices.len() as u32;
-                    vertices.push(GridPoint::new(from.x, y));
-                    crossings.push(next);
-                    edges.push([last, next]);
-                    last = next;
-                }
-                edges.push([last, pair[1]]);
+        let mut on = outline.on(&self.upright, |p| p.x);
+        on.sort_unstable_by_key(|&(v, _)| vertices[v as usize]);
+        for [from, to] in outline.spans(&on, |v| outline.vertices[v as usize].x) {
+            let [a, b] = [from, to].map(|v| vertices[v as usize]);
+            let mut last = from;
+            for &y in between(&self.level, a.y, b.y) {
+                let next = vertices.len() as u32;
+                vertices.push(GridPoint::new(a.x, y));
+                crossings.push(next);
+                edges.push([last, next]);
+                last = next;
             }
+            edges.push([last, to]);
         }
-        let mut on: Vec<u32> =
-            (0..outline).filter(|&v| on_line(&self.level, vertices[v as usize].y)).collect();
-        on.extend(crossings);
-        on.sort_unstable_by_key(|&v| (vertices[v as usize].y, vertices[v as usize].x));
-        for line in on.chunk_by(|&a, &b| vertices[a as usize].y == vertices[b as usize].y) {
-            let mut is_ink = false;
-            for pair in line.windows(2) {
-                is_ink ^= pair[0] < outline;
-                if is_ink {
-                    edges.push([pair[0], pair[1]]);
-                }
-            }
-        }
+        let mut on = outline.on(&self.level, |p| p.y);
+        on.extend(crossings.into_iter().map(|v| (v, false)));
+        on.sort_unstable_by_key(|&(v, _)| (vertices[v as usize].y, vertices[v as usize].x));
+        edges.extend(outline.spans(&on, |v| vertices[v as usize].y));
         Inside { vertices, edges }
+    }
+}
+
+/// The outline of a part that was cut.
+struct Outline {
+    vertices: Vec<GridPoint>,
+    /// The vertices before and after each.
+    beside: Vec<[u32; 2]>,
+}
+
+impl Outline {
+    fn new(part: &Part) -> Self {
+        let vertices = part.contours().flat_map(|c| c.points()).copied().collect();
+        let mut beside = Vec::new();
+        for contour in part.contours() {
+            let (first, n) = (beside.len() as u32, contour.points().len() as u32);
+            beside.extend((0..n).map(|i| [first + (i + n - 1) % n, first + (i + 1) % n]));
+        }
+        Self { vertices, beside }
+    }
+
+    /// The vertices on lines, and whether the outline comes to the other side there. Where it runs along a line for a while, as rounding may
+    /// have it, that is at the last vertex of the run.
+    fn on(&self, lines: &[i64], across: fn(&GridPoint) -> i64) -> Vec<(u32, bool)> {
+        let place = |v: u32| across(&self.vertices[v as usize]);
+        let comes_over = |v: u32| {
+            let here = place(v);
+            let [mut before, after] = self.beside[v as usize];
+            while place(before) == here && before != v {
+                before = self.beside[before as usize][0];
+            }
+            place(after) != here && (place(before) < here) != (place(after) < here)
+        };
+        let all = (0..self.vertices.len() as u32).filter(|&v| lines.binary_search(&place(v)).is_ok());
+        all.map(|v| (v, comes_over(v))).collect()
+    }
+
+    /// Edges through the ink between vertices on lines, in the order of lines and along them: those between which there is ink, and that are no edges of
+    /// the outline.
+    fn spans<'s>(
+        &'s self,
+        on: &'s [(u32, bool)],
+        line: impl Fn(u32) -> i64 + Copy + 's,
+    ) -> impl Iterator<Item = [u32; 2]> + 's {
+        let is_edge = |a: u32, b: u32| self.beside.get(a as usize).is_some_and(|beside| beside.contains(&b));
+        on.chunk_by(move |a, b| line(a.0) == line(b.0)).flat_map(move |line| {
+            let mut is_ink = false;
+            line.windows(2).filter_map(move |pair| {
+                is_ink ^= pair[0].1;
+                let [a, b] = [pair[0].0, pair[1].0];
+                (is_ink && !is_edge(a, b)).then_some([a, b])
+            })
+        })
     }
 }
 

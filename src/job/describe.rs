@@ -11,6 +11,7 @@ use super::report::{
     BandReport, DroppedCutReport, FallbackReport, InputReport, MadeReport, NOT_COUNTED, SeamReport,
     StageTime, StitchReport,
 };
+use super::surface::SurfaceOptions;
 use crate::domain::BandMap;
 use crate::fit::{Outline, Seam};
 use crate::solver::{autocorrelation, evenness, longest_repeat};
@@ -95,6 +96,7 @@ pub(super) fn describe(
         squeezes: map.squeezes().to_vec(),
         bridges: None,
         flat: None,
+        surface: job.options.surface.as_ref().map(SurfaceOptions::report),
         weighed: Vec::new(),
         contact_sheet: None,
         seams: SeamReport {

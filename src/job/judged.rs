@@ -142,6 +142,9 @@ impl Band {
         let options = &self.job.options;
         if let Some(map) = &self.space {
             let solid = space::solid(&self.part, map, chord_mm)?;
+            if !self.job.options.carves_model() {
+                notes.extend(space::relief_notes(map, chord_mm));
+            }
             return match self.merged_counts()? {
                 Some(_) => self.job.ground.as_ref().expect("it has counts with a model").merged(&solid),
                 None => Ok(solid),

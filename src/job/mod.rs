@@ -94,7 +94,7 @@ pub use rect_report::{Attempt, DirectionReport, RectReport};
 pub use recut::recut;
 pub use report::{
     BandReport, DroppedCutReport, FallbackReport, FlatPattern, InputReport, MadeReport, SeamReport,
-    StageTime, StitchReport,
+    StageTime, StitchReport, SurfaceReport,
 };
 pub use scene::{
     Axis, CopyReport, Joint, JointReport, Making, PartReport, Placement, Repeat, Scene, ScenePart,

@@ -156,6 +156,10 @@ fn rolled(
         let wanted = "ask for what the ornament gives by itself, or take a larger --width";
         return refuse(option, "the sides of what is rolled would not meet after it", wanted);
     }
+    if !RectSize::RANGE_MM.contains(&height_mm) {
+        let [least, most] = [RectSize::RANGE_MM.start(), RectSize::RANGE_MM.end()];
+        return refuse("--height", &format!("it is {height_mm} mm"), &format!("use {least} to {most} mm"));
+    }
     let (curve, slant_mm) = roll.curve(height_mm, options.thickness_mm)?;
     let size = RectSize::new(curve.length_mm(), slant_mm)?;
     let relief = drape.map(|drape| drape.relief(&curve, slant_mm)).transpose()?;

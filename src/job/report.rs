@@ -66,6 +66,21 @@ pub struct FallbackReport {
     pub fault: String,
 }
 
+/// What was asked of a band on a model.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct SurfaceReport {
+    /// `band`, `emboss` or `carve`.
+    pub mode: &'static str,
+    /// Where the curve goes: `around 50%`, `through 5 points`, or `along` a file.
+    pub route: String,
+    /// The wall that the model was given, in millimetres.
+    pub shell_mm: Option<f64>,
+    /// How deep it was carved, in millimetres, if not through.
+    pub depth_mm: Option<f64>,
+    /// How far points could be off the model, in millimetres.
+    pub tolerance_mm: f64,
+}
+
 /// The drawing of a band in space: the pattern laid flat.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct FlatPattern {
@@ -105,6 +120,8 @@ pub struct BandReport {
     pub exemplar: InputReport,
     /// The curve as it was given.
     pub along: String,
+    /// What was asked of a band on a model; null for one that lies on none.
+    pub surface: Option<SurfaceReport>,
     /// The file of the curve, if it is in one.
     pub curve: Option<InputReport>,
     /// The seed, if one was given.

@@ -17,6 +17,9 @@ use crate::planar::Tolerances;
 /// The part of the chord error that facets along the curve may spend; flattening, bending and the drawing have the rest.
 const FACET_SHARE: f64 = 0.5;
 
+/// Where less than this part of a thickness is left, it is told.
+const THINNER: f64 = 0.95;
+
 /// Widths of the flat pattern are whole parts of a millimetre, so many.
 const WIDTHS_PER_MM: f64 = 1e4;
 
@@ -88,7 +91,10 @@ pub(super) fn read_space_curve(job: &BandJob) -> Result<Option<SpaceCurve>, JobE
     }
     if curve.is_closed() && (options.enforce || options.bridge_mm.is_some()) {
         let option = if options.enforce { "--enforce" } else { "--bridge" };
-        let wanted = "give a ring a --gap, or ask for what the ornament gives by itself";
+        let wanted = match options.along {
+            CurveSpec::Ring { .. } => "give a ring a --gap, or ask for what the ornament gives by itself",
+            _ => "leave the curve open, or ask for what the ornament gives by itself",
+        };
         return refuse(option, "the ends of a closed band in space would not meet after it", wanted);
     }
     Ok(Some(curve))
@@ -106,8 +112,8 @@ pub(super) fn refuse_flat_only(print: &PrintOptions) -> Result<(), JobError> {
         None => Ok(()),
         Some((option, _)) => Err(JobError::Option {
             option,
-            found: "it is for parts that lie flat, and this band lies along a curve in space".to_owned(),
-            wanted: "leave it out, or lay the band along a line, circle or path".to_owned(),
+            found: "it is for parts that lie flat, and this one does not".to_owned(),
+            wanted: "leave it out".to_owned(),
         }),
     }
 }
@@ -183,6 +189,25 @@ pub(super) fn note(asked: &Tolerances, flat: &Tolerances) -> Option<String> {
             told.join(", ")
         )
     })
+}
+
+/// What to say of a sheet on a relief: how thin it is on slopes, and where facets do not keep the chord error.
+pub(super) fn relief_notes(map: &SpaceMap, chord_mm: f64) -> Vec<String> {
+    let [back, front] = map.w_range_mm();
+    let (thickness_mm, part) = (front - back, map.least_thickness());
+    let mut notes = Vec::new();
+    if part < THINNER {
+        notes.push(format!(
+            "slopes take from the thickness, which is measured without them: {:.2} mm are left of {thickness_mm:.2} mm on the steepest",
+            part * thickness_mm
+        ));
+    }
+    if !map.keeps(FACET_SHARE * chord_mm) {
+        notes.push(format!(
+            "the sheet is bent too finely for its size: facets are not everywhere within {chord_mm:.4} mm of it; a larger --chord, or a smoother sheet"
+        ));
+    }
+    notes
 }
 
 /// The solid of a flat part along the curve.

@@ -22,13 +22,9 @@ pub fn read_facets(bytes: &[u8]) -> Result<Vec<[[f32; 3]; 3]>, VerifyError> {
     Ok(facets.into_iter().map(|Facet { corners, .. }| corners).collect())
 }
 
-/// Whether some row of the beginning is one of an OBJ and none is that of an STL.
+/// Whether it is text with a row that an OBJ has, and no STL. A binary STL is known by its length, whatever its header says.
 fn is_obj(bytes: &[u8]) -> bool {
-    let head = &bytes[..bytes.len().min(4096)];
-    let Ok(text) = std::str::from_utf8(head).or_else(|e| std::str::from_utf8(&head[..e.valid_up_to()]))
-    else {
-        return false;
-    };
+    let Ok(text) = std::str::from_utf8(bytes) else { return false };
     let mut first_words = text.lines().filter_map(|line| line.split_whitespace().next());
     !text.starts_with("solid") && first_words.any(|word| matches!(word, "v" | "f" | "o" | "g"))
 }

@@ -19,7 +19,8 @@ pub fn read_obj(bytes: &[u8]) -> Result<MeshReport, VerifyError> {
     Ok(survey(&facets(bytes, false)?))
 }
 
-/// The facets of an OBJ, at least one. Faces with more than three corners are parted into `fans`, or else an error.
+/// The facets of an OBJ, at least one. As a model that something is made on, `fans` says, faces with more than three corners are parted into
+/// fans, and lines and points passed over; they are errors else.
 pub(super) fn facets(bytes: &[u8], fans: bool) -> Result<Vec<Facet>, VerifyError> {
     if bytes.len() > MAX_BYTES {
         return Err(VerifyError::TooLarge { bytes: bytes.len(), limit: MAX_BYTES });
@@ -53,6 +54,8 @@ pub(super) fn facets(bytes: &[u8], fans: bool) -> Result<Vec<Facet>, VerifyError
                     corners: [corners[0], pair[0], pair[1]].map(|v| vertices[v]),
                 }));
             }
+            // Lines and points beside the surface of a model are nobody's facets.
+            Some("l" | "p") if fans => {}
             None | Some("vn" | "vt" | "g" | "o" | "s" | "usemtl" | "mtllib") => {}
             Some(other) => {
                 return Err(error(format!("{other:?} cannot be counted; a mesh of triangles is wanted")));

@@ -14,6 +14,9 @@ const MOST_TURN: f64 = 0.5;
 /// The cells of a relief are from this wide, in millimetres, to as wide as the greatest; each next one is half of it.
 const CELLS_MM: [f64; 7] = [8.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.125];
 
+/// The most cells of a sheet. Finer ones make files that no program opens; where they are not flat enough, the chord error is not kept, which is told.
+const MOST_CELLS: f64 = 2e6;
+
 impl SpaceMap {
     /// Places along the curve, from `start` to a whole length further, between which flat facets stay within `chord_mm` of the band.
     /// The start is 0 on an open curve.
@@ -91,8 +94,17 @@ impl SpaceMap {
     /// How wide the cells of a relief may be so that they are flat enough: the widest that are, or the narrowest that there are.
     fn cell_mm(&self, chord_mm: f64) -> f64 {
         let tolerance = CHORD_SHARE * chord_mm.max(MIN_CHORD_MM);
-        let wide = |cell: &f64| self.are_flat(*cell, tolerance);
-        CELLS_MM.into_iter().find(wide).unwrap_or(CELLS_MM[CELLS_MM.len() - 1])
+        let [low, high] = self.v_range_mm();
+        let cells = |cell: f64| self.curve().length_mm() * (high - low) / (cell * cell);
+        let few = CELLS_MM.into_iter().take_while(|&cell| cell == CELLS_MM[0] || cells(cell) <= MOST_CELLS);
+        let all: Vec<f64> = few.collect();
+        all.iter().copied().find(|&cell| self.are_flat(cell, tolerance)).unwrap_or(all[all.len() - 1])
+    }
+
+    /// Whether facets stay within `chord_mm` of a relief, as they do but for reliefs that are too fine or too large.
+    pub fn keeps(&self, chord_mm: f64) -> bool {
+        let tolerance = CHORD_SHARE * chord_mm.max(MIN_CHORD_MM);
+        !self.has_relief() || self.are_flat(self.cell_mm(chord_mm), tolerance)
     }
 
     /// Whether cells so wide are flat: two facets of each within `tolerance` of the sheet, whichever way they part the cell.

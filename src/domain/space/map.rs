@@ -34,6 +34,7 @@ pub struct SpaceMap {
     w_range: [f64; 2],
     relief: Option<Relief>,
     scales: [f64; 2],
+    steepest: f64,
 }
 
 impl SpaceMap {
@@ -64,9 +65,9 @@ impl SpaceMap {
         gap_mm: f64,
     ) -> Result<Self, SpaceError> {
         let scales = [1.0; 2];
-        let mut map = Self { curve, v_range: v_range_mm, w_range: w_range_mm, relief, scales };
+        let mut map = Self { curve, v_range: v_range_mm, w_range: w_range_mm, relief, scales, steepest: 0.0 };
         map.check_folds()?;
-        map.scales = map.measured_scales()?;
+        (map.scales, map.steepest) = map.measured_scales()?;
         first_contact(&map, gap_mm).map_or(Ok(map), Err)
     }
 
@@ -123,16 +124,23 @@ impl SpaceMap {
         1.0 - frame.curvature.dot(frame.across) * v - frame.curvature.dot(frame.out) * out
     }
 
+    /// The least part of its thickness that the sheet has, measured straight through it: less than 1 where a relief slopes, as the thickness stands
+    /// on the sheet without it.
+    pub fn least_thickness(&self) -> f64 {
+        (1.0 + self.steepest * self.steepest).sqrt().recip()
+    }
+
     /// The least and the greatest factor by which lengths on the band are multiplied, in any direction and anywhere: the singular
     /// values of the map on its front and its back. A twist lengthens the edges, and shears.
     pub fn scales(&self) -> [f64; 2] {
         self.scales
     }
 
-    fn measured_scales(&self) -> Result<[f64; 2], SpaceError> {
+    /// The scales, and the steepest slope of the relief.
+    fn measured_scales(&self) -> Result<([f64; 2], f64), SpaceError> {
         let places: Vec<f64> = self.looks().collect();
         let frames: Vec<SpaceFrame> = places.iter().map(|&u| self.curve.frame(u)).collect();
-        let mut scales = [1.0f64, 1.0];
+        let (mut scales, mut steepest) = ([1.0f64, 1.0], 0.0f64);
         for (pair, u) in frames.windows(2).zip(places.windows(2)) {
             let [from, to] = [pair[0], pair[1]];
             let step = u[1] - u[0];
@@ -145,6 +153,7 @@ impl SpaceMap {
                     let along = DVec3::new(1.0 - a * v - b * w, -twist * w, twist * v + slope_u);
                     let across = DVec3::new(0.0, 1.0, slope_v);
                     let steep = slope_v.hypot(slope_u / along.x.max(LEAST_SCALE));
+                    steepest = steepest.max(steep);
                     if self.relief.is_some() && steep > STEEPEST {
                         let position = self.place(DVec2::new(u[0], v), 0.0);
                         return Err(SpaceError::Steep { position, degrees: steep.atan().to_degrees() });
@@ -157,7 +166,7 @@ impl SpaceMap {
                 }
             }
         }
-        Ok(scales)
+        Ok((scales, steepest))
     }
 
     /// The height of the relief and its slopes along u and v, over a `step`.

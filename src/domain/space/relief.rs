@@ -44,7 +44,10 @@ impl Relief {
             false => (uv.x / self.length_mm).clamp(0.0, 1.0) * (columns - 1.0),
         };
         let y = ((uv.y - low) / (high - low)).clamp(0.0, 1.0) * (rows - 1.0);
-        let ((i, wx), (j, wy)) = (weights(x), weights(y));
+        let ((i, wx), (j, wy)) = match self.is_closed {
+            true => (weights(x), bordered(weights(y), self.rows)),
+            false => (bordered(weights(x), self.columns), bordered(weights(y), self.rows)),
+        };
         let column = |k: i64| match self.is_closed {
             true => k.rem_euclid(self.columns as i64) as usize,
             false => k.clamp(0, self.columns as i64 - 1) as usize,
@@ -73,6 +76,27 @@ fn weights(x: f64) -> (i64, [f64; 4]) {
     (cell as i64, [s * s * s / 6.0, inner(t), inner(s), t * t * t / 6.0])
 }
 
+/// The same at the borders of a table of `n` values, beyond which it goes on straight: what the value beyond would weigh is put on the last
+/// two. No weight becomes negative by that, and the border is met exactly.
+fn bordered((cell, mut weights): (i64, [f64; 4]), n: usize) -> (i64, [f64; 4]) {
+    let last = n as i64 - 1;
+    if cell == 0 {
+        weights[1] += 2.0 * weights[0];
+        weights[2] -= weights[0];
+        weights[0] = 0.0;
+    }
+    if cell == last {
+        weights[1] += 2.0 * weights[2];
+        weights[0] -= weights[2];
+        (weights[2], weights[3]) = (0.0, 0.0);
+    } else if cell + 1 == last {
+        weights[2] += 2.0 * weights[3];
+        weights[1] -= weights[3];
+        weights[3] = 0.0;
+    }
+    (cell, weights)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -82,7 +106,9 @@ mod tests {
     fn planes_stay_planes() {
         let heights = (0..5).flat_map(|j| (0..7).map(move |i| 2.0 * f64::from(i) - f64::from(j))).collect();
         let relief = Relief::new(heights, 7, 60.0, [-20.0, 20.0], false);
-        for (u, v) in [(20.0, 0.0), (31.0, -3.0), (40.0, 5.5)] {
+        for (u, v) in
+            [(20.0, 0.0), (31.0, -3.0), (40.0, 5.5), (0.0, -20.0), (60.0, 20.0), (59.0, -19.0), (1.0, 19.5)]
+        {
             let plane = 2.0 * u / 10.0 - (v + 20.0) / 10.0;
             assert!((relief.at(DVec2::new(u, v)) - plane).abs() < 1e-12);
         }

@@ -178,7 +178,7 @@ pub enum SurfaceError {
     },
     /// A wall is no thickness, or makes no mesh.
     #[error(
-        "a wall of {wall_mm} mm cannot be made at ({:.3}, {:.3}, {:.3}) mm; use more than 0.01 mm, and less than the radii of the model",
+        "a wall of {wall_mm} mm cannot be made at ({:.3}, {:.3}, {:.3}) mm, where its inner side would turn over or meet itself; use more than 0.01 mm, and less than the model is curved or thick there",
         position.x, position.y, position.z
     )]
     Wall {

@@ -56,6 +56,18 @@ impl Mesh {
             let position = moved.find(|p| !seen.insert((**p + DVec3::ZERO).to_array().map(f64::to_bits)));
             return Err(SurfaceError::Wall { wall_mm, position: position.copied().unwrap_or(outer[0]) });
         }
+        // Where the wall is thicker than the model is curved, its inner side is turned over.
+        for facet in 0..self.triangles().len() {
+            let [a, b, c] = self.corners(facet);
+            let [p, q, r] = self.triangles()[facet].map(|v| vertices[(v + n) as usize]);
+            // Beyond the middle of a ball it is turned about, in both directions: then its edges point the other way.
+            let is_turned = [(b - a, q - p), (c - b, r - q), (a - c, p - r)]
+                .iter()
+                .any(|(edge, inner)| edge.dot(*inner) <= 0.0);
+            if is_turned || (b - a).cross(c - a).dot((q - p).cross(r - p)) <= 0.0 {
+                return Err(SurfaceError::Wall { wall_mm, position: (a + b + c) / 3.0 });
+            }
+        }
         let mut triangles = self.triangles().to_vec();
         triangles.extend(self.triangles().iter().map(|&[a, b, c]| [a + n, c + n, b + n]));
         let count = self.parts().len() as u32;
@@ -99,6 +111,15 @@ mod tests {
 
     fn parts(mesh: &Mesh) -> Vec<(usize, usize)> {
         mesh.parts().iter().map(|&MeshPart { borders, genus, .. }| (borders, genus)).collect()
+    }
+
+    #[test]
+    fn walls_that_turn_over_are_told() {
+        let ball = clean(ball(6, |p| 25.0 * p.normalize()));
+        assert!(ball.thickened(12.0).is_ok());
+        for wall in [25.0, 26.0, 40.0] {
+            assert!(matches!(ball.thickened(wall), Err(SurfaceError::Wall { .. })), "{wall}");
+        }
     }
 
     #[test]

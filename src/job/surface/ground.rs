@@ -175,6 +175,9 @@ fn check(options: &SurfaceOptions) -> Result<(), JobError> {
     let refuse = |option: &'static str, found: &str, wanted: &str| {
         Err(JobError::Option { option, found: found.to_owned(), wanted: wanted.to_owned() })
     };
+    if options.tolerance_mm.is_nan() || options.tolerance_mm < 0.0 {
+        return refuse("--tolerance", &format!("it is {} mm", options.tolerance_mm), "use 0 mm or more");
+    }
     let lengths = [("--shell", options.shell_mm), ("--depth", options.depth_mm)];
     if let Some((option, _)) = lengths.into_iter().find(|(_, mm)| mm.is_some_and(|mm| mm <= 0.0)) {
         return refuse(option, "it is no thickness", "use a length of more than 0, as 2mm");

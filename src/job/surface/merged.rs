@@ -7,8 +7,9 @@
 use super::super::error::JobError;
 use super::{Ground, SurfaceMode};
 use crate::domain::MeshPart;
+use crate::export;
 use crate::fabricate::{self, Counts, Solid};
-use crate::verify::Expected;
+use crate::verify::{self, Expected};
 
 /// How many shells a model with a band has, and their genus together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -80,7 +81,23 @@ impl Ground {
             None => self.mesh(),
         };
         mesh.ensure_closed()?;
-        Ok(Solid::from_facets(mesh.facets())?)
+        let solid = Solid::from_facets(mesh.facets())?;
+        // What crosses itself has no inside to add to or take from.
+        let found = verify::read_stl(&export::stl(&solid, "")?)
+            .map_err(|error| JobError::Unjudged { file: self.options().model.clone(), error })?;
+        match (found.faults.first(), self.options().shell_mm) {
+            (None, _) => Ok(solid),
+            (Some(fault), Some(wall_mm)) => Err(JobError::Option {
+                option: "--shell",
+                found: format!("the model with a wall of {wall_mm} mm is not sound: {fault}"),
+                wanted: "use a thinner wall, or a model that does not cross itself".to_owned(),
+            }),
+            (Some(fault), None) => Err(JobError::Option {
+                option: "--mesh",
+                found: format!("{} is not sound: {fault}", self.options().model.display()),
+                wanted: "unite its parts (a boolean union), so that nothing crosses".to_owned(),
+            }),
+        }
     }
 
     /// The model with `band` on it, or without what is in the band.

@@ -14,6 +14,7 @@ use std::str::FromStr;
 use glam::DVec3;
 use thiserror::Error;
 
+use super::report::SurfaceReport;
 use crate::domain::{LengthError, parse_length_mm};
 
 pub use ground::Ground;
@@ -104,6 +105,30 @@ pub enum RouteError {
         /// The point.
         point: String,
     },
+}
+
+impl SurfaceOptions {
+    /// What reports say of it.
+    pub(super) fn report(&self) -> SurfaceReport {
+        SurfaceReport {
+            mode: match self.mode {
+                SurfaceMode::Band => "band",
+                SurfaceMode::Emboss => "emboss",
+                SurfaceMode::Carve => "carve",
+            },
+            route: match &self.route {
+                Route::Around(height) => format!("around {height}"),
+                Route::Curve(file) => format!("along {}", file.display()),
+                Route::Through { points, is_closed } => {
+                    let closed = if *is_closed { ", closed" } else { "" };
+                    format!("through {} points{closed}", points.0.len())
+                }
+            },
+            shell_mm: self.shell_mm,
+            depth_mm: self.depth_mm,
+            tolerance_mm: self.tolerance_mm,
+        }
+    }
 }
 
 impl FromStr for Height {

@@ -9,6 +9,8 @@ use crate::domain::{MeshHeights, Relief, SpaceCurve, SurfaceError};
 /// A relief has a value for each of so many parts of the band's width, and at most so far apart, in millimetres.
 const RELIEF_PARTS: f64 = 24.0;
 const RELIEF_MM: f64 = 0.5;
+/// The most values.
+const MOST_VALUES: f64 = 500_000.0;
 /// A wall is thinner or thicker than a depth if it is so by this part at least.
 const CLEARLY: f64 = 0.05;
 
@@ -27,7 +29,9 @@ impl<'g> Under<'g> {
     pub(super) fn new(ground: &'g Ground, half: f64, reach_mm: f64) -> Self {
         let curve = ground.curve();
         let length_mm = curve.length_mm();
-        let step = (2.0 * half / RELIEF_PARTS).min(RELIEF_MM);
+        // Of a large model so many values are enough, and more take minutes.
+        let step =
+            (2.0 * half / RELIEF_PARTS).min(RELIEF_MM).max((2.0 * half * length_mm / MOST_VALUES).sqrt());
         let rows = ((2.0 * half / step).ceil() as usize + 1).max(4);
         let columns = ((length_mm / step).ceil() as usize + 1).max(4);
         // Long facets have few points on the curve.

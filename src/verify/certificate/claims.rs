@@ -70,7 +70,12 @@ impl Replay<'_> {
         if !self.certificate.files.iter().filter(of_format).any(|f| f.sha256 == sha256) {
             let known: Vec<&str> =
                 self.certificate.files.iter().filter(of_format).map(|f| f.sha256.as_str()).collect();
-            let known = if known.is_empty() { "no such file".to_owned() } else { known.join(", ") };
+            let known = if known.is_empty() {
+                "no such file, or one whose counts are others: a pattern on a model, or one cut open"
+                    .to_owned()
+            } else {
+                known.join(", ")
+            };
             self.fault(
                 CertificatePlace::File,
                 format!("its SHA-256 is {sha256}; the report has written as .{format}: {known}"),
