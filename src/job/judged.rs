@@ -3,6 +3,7 @@
 //! The promise at the machine's tolerance is checked on the drawing, so one is always made. Excluded: cut lines, which are
 //! judged as files ([`super::laser`]).
 
+use std::cell::Cell;
 use std::path::PathBuf;
 
 use super::band::{Band, FINER_CHORDS};
@@ -24,6 +25,9 @@ use crate::verify::{self, Expected, Mismatch, NarrowPlaces, Narrowest, SvgReport
 
 /// The part of the chord error that is for fitting curves to the drawing.
 const SVG_SHARE: f64 = 0.5;
+
+/// Solids of more facets are not made again with finer ones: each takes several times as long.
+const MOST_FACETS: usize = 300_000;
 
 /// What a drawing without a file is called.
 const DRAWING: &str = "the drawing";
@@ -181,18 +185,25 @@ impl Band {
                 || ((is_leaning || self.space.is_some()) && !options.laser.carve),
         };
         let asked_mm = self.job.tolerances.chord_mm();
-        let mut raised = Raised::new(wanted, clock, |notes| self.solid_within(asked_mm, notes));
+        let facets = Cell::new(0);
+        let mut raised = Raised::new(wanted, clock, |notes| {
+            let solid = self.solid_within(asked_mm, notes)?;
+            facets.set(solid.triangles().len());
+            Ok(solid)
+        });
         // On a bend, facets of ink on both sides of a gap that is finer than they are may cross.
         let finer = FINER_CHORDS.iter().filter(|_| self.space.is_some()).map(|part| part * asked_mm);
         for chord_mm in finer {
-            if !is_faulty(&raised) {
+            if !is_faulty(&raised) || facets.get() > MOST_FACETS {
                 break;
             }
             raised = Raised::new(wanted, clock, |notes| {
                 notes.push(format!(
                     "facets are within {chord_mm:.4} mm instead of {asked_mm:.4} mm, at which some would have crossed"
                 ));
-                self.solid_within(chord_mm, notes)
+                let solid = self.solid_within(chord_mm, notes)?;
+                facets.set(solid.triangles().len());
+                Ok(solid)
             });
         }
         raised.map_err(|error| match error {
