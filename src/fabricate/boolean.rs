@@ -10,6 +10,8 @@
 //! The engine runs on one thread, so that the same solids give the same bytes. Excluded: solids that cross themselves, and
 //! surfaces that are not closed.
 
+use std::cmp::Ordering;
+
 use glam::{DAffine3, DVec3};
 use manifold_rust::manifold::Manifold;
 use manifold_rust::types::{BooleanEngine, Error, MeshGLP, OpType};
@@ -215,10 +217,35 @@ fn rounded(made: &Manifold) -> Result<Solid, FabricateError> {
     Err(fault.unwrap_or(FabricateError::Rounding { thin_mm: THIN_STEPS[THIN_STEPS.len() - 1] * step_mm }))
 }
 
-/// Vertices and facets of what the engine made.
+/// Vertices and facets of what the engine made, in an order that follows from where they are: the engine's own follows from the order in which it
+/// was given solids, by whichever thread.
 fn exported(made: &Manifold) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let mesh: MeshGLP<f64, u32> = made.get_mesh_glp(-1);
     let stride = mesh.num_prop as usize;
-    let vertices = mesh.vert_properties.chunks_exact(stride.max(3)).map(DVec3::from_slice);
-    (vertices.collect(), mesh.tri_verts.as_chunks::<3>().0.to_vec())
+    let own: Vec<DVec3> = mesh.vert_properties.chunks_exact(stride.max(3)).map(DVec3::from_slice).collect();
+    let place = |v: u32| own[v as usize].to_array();
+    let before = |p: &[f64; 3], q: &[f64; 3]| {
+        (0..3).map(|i| p[i].total_cmp(&q[i])).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
+    };
+    let mut facets: Vec<[u32; 3]> = mesh.tri_verts.as_chunks::<3>().0.to_vec();
+    for facet in &mut facets {
+        let first =
+            (0..3).min_by(|&i, &j| before(&place(facet[i]), &place(facet[j]))).expect("there are three");
+        facet.rotate_left(first);
+    }
+    facets.sort_by(|f, g| {
+        let corners = (0..3).map(|i| before(&place(f[i]), &place(g[i])));
+        corners.into_iter().find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
+    });
+    let mut numbers = vec![u32::MAX; own.len()];
+    let mut vertices = Vec::with_capacity(own.len());
+    for v in facets.iter_mut().flatten() {
+        let number = &mut numbers[*v as usize];
+        if *number == u32::MAX {
+            *number = vertices.len() as u32;
+            vertices.push(own[*v as usize]);
+        }
+        *v = *number;
+    }
+    (vertices, facets)
 }

@@ -17,7 +17,7 @@ use super::print;
 use super::raised::{Raised, Wanted};
 use super::space;
 use super::stage::{Clock, Stage};
-use super::surface::MergedCounts;
+use super::surface::{Ground, MergedCounts};
 use crate::export::{self, MeshDocument, SvgDocument, SvgOptions};
 use crate::fabricate::{Counts, FabricateError, Solid};
 use crate::planar::{Region, Tolerances};
@@ -149,7 +149,22 @@ impl Band {
             if !self.job.options.carves_model() {
                 notes.extend(space::relief_notes(map, chord_mm));
             }
-            return match self.merged_counts()? {
+            let counts = self.merged_counts()?;
+            if let Some(MergedCounts { shells, genus }) = counts {
+                notes.push(format!(
+                    "the model with the pattern: {shells} shell(s) of a genus of {genus} in all"
+                ));
+            }
+            if counts.is_some()
+                && self.job.ground.as_ref().is_some_and(Ground::is_through)
+                && self.counts.holes > 0
+            {
+                notes.push(format!(
+                    "carved through, the pattern parts the model into {} pieces, one more than it has holes; --holes 0 leaves it in one",
+                    self.counts.holes + 1
+                ));
+            }
+            return match counts {
                 Some(_) => self.job.ground.as_ref().expect("it has counts with a model").merged(&solid),
                 None => Ok(solid),
             };

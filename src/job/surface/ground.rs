@@ -14,6 +14,8 @@ use crate::verify;
 const MAX_BYTES: u64 = 1 << 30;
 /// The curve is smoothed over so many edges of the model, as its corners are none of the band's.
 const SMOOTHED_EDGES: f64 = 1.5;
+/// A model that is smaller, in millimetres, is one in another unit.
+const LEAST_MM: f64 = 1.0;
 /// Facets so near to the curve are beside it, in millimetres.
 const BESIDE_MM: f64 = 0.1;
 /// The least and the greatest distance between the points that carry the smooth curve, in millimetres.
@@ -64,6 +66,16 @@ impl Ground {
             refuse("--mesh", format!("{}: {error}", file()), "name an STL, a 3MF or an OBJ of triangles")
         })?;
         let (mesh, repairs) = Mesh::new(facets)?;
+        let [low, high] = mesh.bounds_mm();
+        let size_mm = (high - low).max_element();
+        if size_mm < LEAST_MM {
+            let found = format!("{} is only {size_mm:.3} mm large", file());
+            return Err(refuse(
+                "--mesh",
+                found,
+                "models are in millimetres: scale it, by 1000 if it is in metres",
+            ));
+        }
         if options.mode != SurfaceMode::Band && options.shell_mm.is_none() {
             mesh.ensure_closed()?;
         }
@@ -97,7 +109,7 @@ impl Ground {
     }
 
     /// Whether a pattern that is carved goes through the wall of the model.
-    pub(super) fn is_through(&self) -> bool {
+    pub(in super::super) fn is_through(&self) -> bool {
         self.options().mode == SurfaceMode::Carve && self.0.is_through.get().copied().unwrap_or_default()
     }
 
@@ -146,7 +158,15 @@ impl Ground {
             }
         };
         let gap_mm = job.tolerances.min_gap_mm();
-        Ok(SpaceMap::draped(curve.clone(), [-half, half], w_range, Some(relief), gap_mm)?)
+        let map = SpaceMap::draped(curve.clone(), [-half, half], w_range, Some(relief), gap_mm);
+        map.map_err(|error| match (&error, options.mode) {
+            (SpaceError::Fold { .. }, SurfaceMode::Carve) => JobError::Option {
+                option: if options.depth_mm.is_some() { "--depth" } else { "--shell" },
+                found: format!("what is carved reaches {:.2} mm into the model, and {error}", -w_range[0]),
+                wanted: "carve less deep, or lead the curve elsewhere".to_owned(),
+            },
+            _ => error.into(),
+        })
     }
 }
 
