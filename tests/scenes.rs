@@ -171,7 +171,7 @@ fn wrong_scenes_are_told_with_their_lines() {
         (
             "strip = \"ring:30mm\"",
             "box = 3",
-            &["line 6: part hoop is made from nothing", "band, rect, extrude"],
+            &["line 6: part hoop is made from nothing", "band, rect, surface, extrude"],
         ),
         ("strip = true", "band = \"none.svg\"", &["part post", "none.svg"]),
         ("strip = true", "strip = \"line:9mm\"", &["strip of part post is a curve, and points are another"]),
