@@ -6,6 +6,7 @@ use std::process::Output;
 
 use assert_cmd::Command;
 use openwork::verify::{MeshReport, read_stl};
+use proptest::prelude::*;
 use tempfile::TempDir;
 
 /// A hoop, and three posts around it that stand in it.
@@ -249,4 +250,56 @@ fn two_processes_may_share_a_cache() {
     assert_eq!(one, two);
     // Two parts and the whole, and nothing under a temporary name.
     assert_eq!(fs::read_dir(bench.path().join("cache")).unwrap().count(), 3);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(6))]
+    /// Two hoops with posts between them: one shell, and a tunnel more than there are posts.
+    #[test]
+    fn hoops_with_posts_have_the_genus_that_follows(
+        posts in 1usize..7, lean in -9.0..9.0f64, thickness in 1.2..2.4f64, bulge in -0.4..0.4f64, width in 2.0..4.0f64,
+    ) {
+        let top = lean.to_radians();
+        let point = |part: f64, radius: f64| {
+            let (sin, cos) = (part * top).sin_cos();
+            format!("[{}, {}, {}]", radius * cos, radius * sin, 1.0 + 18.0 * part)
+        };
+        let genus = posts + 1;
+        let bench = Workbench::new(&format!(
+            r#"
+            shells = 1
+            genus = {genus}
+            output = ["crown.stl"]
+            [every]
+            chord = "0.1mm"
+            [part.low]
+            strip = "ring:30mm"
+            width = "4mm"
+            thickness = "3mm"
+            [part.high]
+            strip = "ring:30mm"
+            width = "4mm"
+            thickness = "3mm"
+            place = {{ move = [0, 0, 16] }}
+            [part.post]
+            strip = true
+            points = [{}, {}, {}]
+            width = {width}
+            thickness = {thickness}
+            repeat = {posts}
+            [[joint]]
+            between = ["post", "low"]
+            [[joint]]
+            between = ["post", "high"]
+            "#,
+            point(0.0, 16.5),
+            point(0.5, 16.5 + bulge),
+            point(1.0, 16.5),
+        ));
+        let output = bench.build();
+        prop_assert!(output.status.success(), "{}", text(&output));
+        let found = bench.found();
+        prop_assert!(found.faults.is_empty(), "{:?}", found.faults);
+        prop_assert_eq!((found.shells.len(), found.genus), (1, genus as i64));
+    }
 }

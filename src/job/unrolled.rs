@@ -20,18 +20,24 @@ pub(super) fn best_cut(contours: &[OutlineContour], length_mm: f64) -> f64 {
         contours.iter().flat_map(|c| &c.points).map(|p| p.x.rem_euclid(length_mm)).collect();
     taken.sort_unstable_by(f64::total_cmp);
     let ends = ends(contours, length_mm);
-    let judged = |k: usize| {
-        let near = (k as f64 + 0.5) / PLACES as f64 * length_mm;
-        // The middle between two vertices.
-        let next = taken.partition_point(|&x| x <= near);
-        let (place, is_narrow) = match (next.checked_sub(1), taken.get(next)) {
-            (Some(before), Some(&after)) => {
-                (taken[before].midpoint(after), after - taken[before] < NARROW_MM)
+    let places: Vec<(f64, bool)> = (0..PLACES)
+        .map(|k| {
+            let near = (k as f64 + 0.5) / PLACES as f64 * length_mm;
+            // The middle between two vertices.
+            let next = taken.partition_point(|&x| x <= near);
+            match (next.checked_sub(1), taken.get(next)) {
+                (Some(before), Some(&after)) => {
+                    (taken[before].midpoint(after), after - taken[before] < NARROW_MM)
+                }
+                _ => (near, false),
             }
-            _ => (near, false),
-        };
-        let mut crossings = Vec::new();
-        contours.iter().for_each(|c| crossings_at(c, length_mm, place, &mut crossings));
+        })
+        .collect();
+    let mut crossed =
+        crossings(contours, length_mm, &places.iter().map(|&(place, _)| place).collect::<Vec<_>>());
+    let judged = |k: usize| {
+        let (place, is_narrow) = places[k];
+        let crossings = &mut crossed[k];
         crossings.sort_unstable_by(f64::total_cmp);
         let ink: f64 = crossings.chunks_exact(2).map(|pair| pair[1] - pair[0]).sum();
         let next = ends.partition_point(|&x| x <= place);
@@ -57,16 +63,22 @@ fn ends(contours: &[OutlineContour], length_mm: f64) -> Vec<f64> {
     ends
 }
 
-/// The heights at which a contour crosses the line at `place`, and those a whole length further.
-fn crossings_at(contour: &OutlineContour, length_mm: f64, place: f64, heights: &mut Vec<f64>) {
-    for (a, b) in edges(contour, length_mm) {
-        let (from, to) = ((a.x - place) / length_mm, (b.x - place) / length_mm);
-        let (low, high) = (from.min(to).floor() as i64 + 1, from.max(to).floor() as i64);
-        for lap in low..=high {
-            let t = (lap as f64 - from) / (to - from);
-            heights.push(a.y + t * (b.y - a.y));
+/// For each of `places`, which ascend, the heights at which contours cross the line there, and those whole lengths further.
+fn crossings(contours: &[OutlineContour], length_mm: f64, places: &[f64]) -> Vec<Vec<f64>> {
+    let mut heights = vec![Vec::new(); places.len()];
+    for (a, b) in contours.iter().flat_map(|contour| edges(contour, length_mm)) {
+        let (low, high) = (a.x.min(b.x), a.x.max(b.x));
+        let laps = (low / length_mm).floor() as i64..=(high / length_mm).floor() as i64;
+        for start in laps.map(|lap| lap as f64 * length_mm) {
+            let from = places.partition_point(|place| place + start <= low);
+            let to = places.partition_point(|place| place + start <= high);
+            for k in from..to {
+                let t = (places[k] + start - a.x) / (b.x - a.x);
+                heights[k].push(a.y + t * (b.y - a.y));
+            }
         }
     }
+    heights
 }
 
 fn edges(contour: &OutlineContour, length_mm: f64) -> impl Iterator<Item = (DVec2, DVec2)> + '_ {
