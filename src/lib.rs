@@ -39,6 +39,7 @@ pub mod job;
 pub mod pieces;
 pub mod planar;
 pub mod reeb;
+pub mod samples;
 pub mod solver;
 pub mod topology;
 pub mod verify;

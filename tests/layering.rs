@@ -11,7 +11,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Every room with the rooms that it may import, in the order of the house. A room knows only earlier ones.
-const ROOMS: [(&str, &[&str]); 14] = [
+const ROOMS: [(&str, &[&str]); 15] = [
     ("planar", &[]),
     ("exemplar", &["planar"]),
     ("reeb", &["planar"]),
@@ -27,6 +27,8 @@ const ROOMS: [(&str, &[&str]); 14] = [
     ("export", &["planar", "fabricate"]),
     // Nothing of what made the file that is judged.
     ("verify", &["planar"]),
+    // What is asked for, and not how the other engine meets it.
+    ("samples", &["planar", "topology"]),
     ("analysis", &["planar", "exemplar", "reeb", "topology", "pieces", "export"]),
     (
         "job",
@@ -42,6 +44,7 @@ const ROOMS: [(&str, &[&str]); 14] = [
             "fabricate",
             "export",
             "verify",
+            "samples",
             "analysis",
         ],
     ),
@@ -63,7 +66,7 @@ const LIBRARIES: [(&str, &[&str]); 18] = [
     ("i_triangle", &["src/fabricate/caps.rs"]),
     ("manifold_rust", &["src/fabricate/boolean.rs"]),
     ("spade", &["src/verify", "src/fit/links.rs", "src/fabricate/caps.rs", "src/fabricate/enforce/core.rs"]),
-    ("faer", &["src/fit/least_squares.rs", "src/domain/surface/mean_value.rs"]),
+    ("faer", &["src/fit/least_squares.rs", "src/domain/surface/mean_value.rs", "src/samples/positions.rs"]),
     ("petgraph", &["src/reeb"]),
     ("usvg", &["src/exemplar", "src/verify", "src/analysis/overlay.rs"]),
     (

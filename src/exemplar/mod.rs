@@ -27,7 +27,6 @@ mod limits;
 mod outline;
 mod scan;
 mod source;
-mod stroke;
 mod style;
 
 use std::fmt;

@@ -11,8 +11,7 @@ use kurbo::{Affine, BezPath, ParamCurveArclen, PathEl};
 use super::artwork::{Artwork, Brush, Clip, Item, Shape};
 use super::error::{ExemplarFault, Place};
 use super::limits::Limits;
-use super::stroke::stroked;
-use crate::planar::{Contour, FillRule, Grid, GridError, GridPoint, Region, boundaries};
+use crate::planar::{Contour, FillRule, Grid, GridError, GridPoint, Region, boundaries, stroked};
 
 /// A dash of no length becomes one of this part of the stroke's width, so that its caps have a direction.
 const DOT: f64 = 1e-4;

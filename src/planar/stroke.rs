@@ -26,7 +26,7 @@ const SHORTEST_CHORD: f64 = 1e-3;
 
 /// The polygons that the pen of `style` covers along `path`, all counter-clockwise and within `tolerance` of
 /// the exact stroke when united; `None` if they have more than `limit` vertices.
-pub(super) fn stroked(
+pub fn stroked(
     path: &BezPath,
     style: &Stroke,
     tolerance: f64,

@@ -1,0 +1,77 @@
+//! Where the pattern is to lie: a region, or a strip whose two ends are one place.
+
+use glam::DVec2;
+
+use crate::planar::{EdgeIndex, Region};
+
+/// The output domain D (Tu 2020 §4.3.1).
+pub struct Area {
+    region: Region,
+    index: EdgeIndex,
+    lap_mm: Option<f64>,
+}
+
+impl Area {
+    /// The inside of a region in millimetres, y up; it may have holes.
+    pub fn new(region: Region) -> Self {
+        Self { index: EdgeIndex::new(&region), region, lap_mm: None }
+    }
+
+    /// The same, where x and x + `lap_mm` are one place. The region has to reach over one lap, from x = 0, and one half more on both sides.
+    pub fn rolled(region: Region, lap_mm: f64) -> Self {
+        Self { lap_mm: Some(lap_mm), ..Self::new(region) }
+    }
+
+    /// The region.
+    pub fn region(&self) -> &Region {
+        &self.region
+    }
+
+    /// By how much x grows once round, if the ends are one place.
+    pub fn lap_mm(&self) -> Option<f64> {
+        self.lap_mm
+    }
+
+    /// Lower left and upper right corner of where samples are: of one lap, if the ends are one place.
+    pub fn bounds_mm(&self) -> (DVec2, DVec2) {
+        let (low, high) = self.region.bounds_mm().unwrap_or_default();
+        match self.lap_mm {
+            Some(lap_mm) => (DVec2::new(0.0, low.y), DVec2::new(lap_mm, high.y)),
+            None => (low, high),
+        }
+    }
+
+    /// Whether a position lies inside, decided exactly on the region's grid; the border is inside.
+    pub fn contains(&self, p: DVec2) -> bool {
+        let Ok(p) = self.region.grid().snap(self.home(p)) else { return false };
+        self.region.parts().iter().any(|part| part.covers(p))
+    }
+
+    /// The point of the border that is nearest, in the lap of `p`.
+    pub fn nearest(&self, p: DVec2) -> DVec2 {
+        let home = self.home(p);
+        self.index.nearest(home).map_or(p, |edge| p + edge.nearest(home) - home)
+    }
+
+    /// How far the border is, in millimetres.
+    pub fn depth_mm(&self, p: DVec2) -> f64 {
+        self.nearest(p).distance(p)
+    }
+
+    /// The shortest way from `a` to `b`.
+    pub fn way(&self, a: DVec2, b: DVec2) -> DVec2 {
+        let way = b - a;
+        match self.lap_mm {
+            Some(lap_mm) => DVec2::new(way.x - (way.x / lap_mm).round() * lap_mm, way.y),
+            None => way,
+        }
+    }
+
+    /// The same place in the first lap.
+    pub fn home(&self, p: DVec2) -> DVec2 {
+        match self.lap_mm {
+            Some(lap_mm) => DVec2::new(p.x.rem_euclid(lap_mm), p.y),
+            None => p,
+        }
+    }
+}

@@ -1,0 +1,20 @@
+//! The second engine: sample graphs (Tu 2020, Continuous Curve Textures).
+//!
+//! A pattern of curves and elements is turned into samples with edges; samples of the output are moved, added, removed and joined until
+//! around each of them it looks as somewhere in the exemplar; curves are drawn through what comes of it; and what was joined by no edge
+//! is joined, or opened, until the ink has the components and holes that were asked for.
+//!
+//! ```text
+//! Drawing --> sampling --> search <--> assignment --> reconstruction --> completion --> Drawing, Region
+//!                              for each level
+//! ```
+
+mod area;
+mod drawing;
+mod graph;
+mod options;
+
+pub use area::Area;
+pub use drawing::{Curve, Drawing, Element};
+pub use graph::{Adjacency, Edge, Graph, Kind, Sample};
+pub use options::{Level, Options, Start, UnmatchedPrice, Without};
