@@ -11,10 +11,12 @@
 
 mod area;
 mod drawing;
+mod elements;
 mod graph;
 mod options;
 
 pub use area::Area;
 pub use drawing::{Curve, Drawing, Element};
+pub use elements::{Class, Elements, Placed, Similarity};
 pub use graph::{Adjacency, Edge, Graph, Kind, Sample};
 pub use options::{Level, Options, Start, UnmatchedPrice, Without};
