@@ -13,10 +13,14 @@ mod area;
 mod drawing;
 mod elements;
 mod graph;
+mod ink;
 mod options;
+mod reconstruct;
 
 pub use area::Area;
 pub use drawing::{Curve, Drawing, Element};
 pub use elements::{Class, Elements, Placed, Similarity};
 pub use graph::{Adjacency, Edge, Graph, Kind, Sample};
+pub use ink::inked;
 pub use options::{Level, Options, Start, UnmatchedPrice, Without};
+pub use reconstruct::{Reconstruction, Route, reconstruct};
