@@ -10,6 +10,7 @@
 //! ```
 
 mod area;
+mod complete;
 mod drawing;
 mod elements;
 mod graph;
@@ -18,6 +19,7 @@ mod options;
 mod reconstruct;
 
 pub use area::Area;
+pub use complete::{Change, ChangeKind, CompleteError, CompleteOptions, Completed, complete};
 pub use drawing::{Curve, Drawing, Element};
 pub use elements::{Class, Elements, Placed, Similarity};
 pub use graph::{Adjacency, Edge, Graph, Kind, Sample};
