@@ -1,5 +1,8 @@
 //! Edges that are taken away: between two faces, to open a hole, and where they alone hold a component together, to part it.
 
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+
 use super::ChangeKind;
 use super::lines::Owner;
 use super::links::Planner;
@@ -55,6 +58,33 @@ impl Planner<'_, '_> {
         steps.filter(|step| !(self.is_banned)(step)).take(needed).collect()
     }
 
+    /// A step that opens a hole where after it the fewest more would have to be opened to part the component: what two faces share
+    /// in two places parts when both are cut, and of three faces that meet in pairs all.
+    pub fn opening_to_part(&self) -> Option<Step> {
+        let cuts: Vec<Cut> = self.cuts().into_iter().filter(|cut| cut.faces[0] != cut.faces[1]).collect();
+        let mut shared: BTreeMap<[usize; 2], usize> = BTreeMap::new();
+        let mut around: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
+        for &Cut { faces: [a, b], .. } in &cuts {
+            *shared.entry([a.min(b), a.max(b)]).or_default() += 1;
+            around.entry(a).or_default().insert(b);
+            around.entry(b).or_default().insert(a);
+        }
+        let worth = |cut: &Cut| {
+            let [a, b] = cut.faces;
+            (shared[&[a.min(b), a.max(b)]] > 1, around[&a].intersection(&around[&b]).count())
+        };
+        let steps = cuts
+            .iter()
+            .map(|cut| (worth(cut), Step::remove(ChangeKind::Open, cut.edges.clone(), &self.scene.work)));
+        let mut best: Option<((bool, usize), Step)> = None;
+        for (worth, step) in steps.filter(|(_, step)| !(self.is_banned)(step)) {
+            if best.as_ref().is_none_or(|(known, _)| worth > *known) {
+                best = Some((worth, step));
+            }
+        }
+        best.map(|(_, step)| step)
+    }
+
     /// One cut for each strand that has a face on either side, those of least confidence first.
     fn cuts(&self) -> Vec<Cut> {
         let mut cuts: Vec<Cut> = strands(self.scene).iter().filter_map(|strand| self.cut(strand)).collect();
@@ -70,25 +100,23 @@ impl Planner<'_, '_> {
             return None;
         }
         let faces = strand.edges.iter().find_map(|&edge| faces(scene, edge))?;
-        let length = |range: std::ops::Range<usize>| {
-            strand.edges[range].iter().map(|&edge| work.length_mm(edge)).sum::<f64>()
-        };
+        let length =
+            |range: Range<usize>| strand.edges[range].iter().map(|&edge| work.length_mm(edge)).sum::<f64>();
         let count = strand.edges.len();
         let is_held =
             [strand.samples[0], strand.samples[count]].map(|sample| scene.by_sample[sample].len() > 1);
         let is_loop = strand.samples[0] == strand.samples[count];
-        let gap_mm = (GAP_PENS * work.pen_mm).max(work.completing.min_gap_mm) + work.pen_mm;
-        let parts = faces[0] == faces[1];
+        // What is left at an end in the open is a component by itself, and may not be a crumb.
+        let leaves_no_crumb = |range: &Range<usize>| {
+            let remains = [length(0..range.start), length(range.end..count)];
+            is_loop || (0..2).all(|side| is_held[side] || remains[side] >= CRUMB_PENS * work.pen_mm)
+        };
         let is_whole =
             is_held == [true; 2] && !is_loop && length(0..count) < WHOLE_SPACINGS * scene.spacing_mm();
-        let range = if is_whole { 0..count } else { self.gap(strand, gap_mm)? };
-        // What is left at an end in the open would be parted too, and no crumb may be left.
-        let crumb_mm = CRUMB_PENS * work.pen_mm;
-        let remains = [length(0..range.start), length(range.end..count)];
-        let is_crumb = (0..2).any(|side| !is_held[side] && remains[side] < crumb_mm);
-        if (parts || !is_loop) && is_crumb && !(is_loop && !parts) {
-            return None;
-        }
+        let range = match is_whole {
+            true => 0..count,
+            false => self.gaps(strand).find(leaves_no_crumb)?,
+        };
         let edges = strand.edges[range].to_vec();
         if !self.is_bold && edges.iter().any(|&edge| self.is_touched(edge, strand)) {
             return None;
@@ -97,26 +125,29 @@ impl Planner<'_, '_> {
         Some(Cut { edges, confidence, faces })
     }
 
-    /// The range of edges around the least confident one that leaves a gap as wide as that, or all.
-    fn gap(&self, strand: &Strand, gap_mm: f64) -> Option<std::ops::Range<usize>> {
+    /// Around each edge, the least confident first, as many as leave a gap that is seen as one; all if there are no more.
+    fn gaps<'t>(&self, strand: &'t Strand) -> impl Iterator<Item = Range<usize>> + use<'t, '_> {
         let work = &self.scene.work;
-        let confidence = |i: &usize| work.edges[strand.edges[*i]].confidence;
-        let middle = strand.edges.len() as f64 / 2.0;
-        let off_middle = |i: &usize| (*i as f64 + 0.5 - middle).abs();
-        let least = (0..strand.edges.len()).min_by(|a, b| {
-            confidence(a).total_cmp(&confidence(b)).then(off_middle(a).total_cmp(&off_middle(b)))
-        })?;
-        let mut range = least..least + 1;
+        let gap_mm = (GAP_PENS * work.pen_mm).max(work.completing.min_gap_mm) + work.pen_mm;
+        let confidence = |i: usize| work.edges[strand.edges[i]].confidence;
+        let off_middle = |i: usize| (2 * i + 1).abs_diff(strand.edges.len());
+        let mut order: Vec<usize> = (0..strand.edges.len()).collect();
+        order.sort_by(|&a, &b| {
+            confidence(a).total_cmp(&confidence(b)).then(off_middle(a).cmp(&off_middle(b))).then(a.cmp(&b))
+        });
         let at = |i: usize| work.samples[strand.samples[i]].at;
-        while work.area.way(at(range.start), at(range.end)).length() < gap_mm {
-            match (range.start > 0, range.end < strand.edges.len()) {
-                (true, true) if (range.end - range.start) % 2 == 0 => range.start -= 1,
-                (_, true) => range.end += 1,
-                (true, false) => range.start -= 1,
-                (false, false) => break,
+        order.into_iter().map(move |least| {
+            let mut range = least..least + 1;
+            while work.area.way(at(range.start), at(range.end)).length() < gap_mm {
+                match (range.start > 0, range.end < strand.edges.len()) {
+                    (true, true) if range.len() % 2 == 0 => range.start -= 1,
+                    (_, true) => range.end += 1,
+                    (true, false) => range.start -= 1,
+                    (false, false) => break,
+                }
             }
-        }
-        Some(range)
+            range
+        })
     }
 
     /// Whether ink lies at an edge that is not of its own path: it would be left in the gap, or hangs on to it.

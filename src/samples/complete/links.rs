@@ -16,6 +16,8 @@ use crate::samples::Kind;
 const SMALL_PENS: f64 = 8.0;
 /// Candidates for each pair of components, as the cheapest may be in the way of something.
 const PER_PAIR: usize = 6;
+/// Candidates within a component from one place.
+const PER_PORT: usize = 3;
 /// A link that ends at an edge ends at its sample if that is nearer than this many pens.
 const SNAP_PENS: f64 = 1.5;
 /// How often the reach is doubled, from three spacings on.
@@ -208,9 +210,13 @@ impl Planner<'_, '_> {
                 let way = line.nearest(port.at).0 - port.at;
                 port.onward.is_none_or(|onward| onward.dot(way) > 0.0)
             });
-            if let Some((_, line)) = ahead.into_iter().next() {
-                let link = Link::smooth(self.scene, &port, &self.landing(line, port.at));
-                links.push((link.cost(), link));
+            let mut seen: Vec<Owner> = Vec::new();
+            for (_, line) in ahead {
+                if seen.len() < PER_PORT && !seen.contains(&line.owner) {
+                    seen.push(line.owner);
+                    let link = Link::smooth(self.scene, &port, &self.landing(line, port.at));
+                    links.push((link.cost(), link));
+                }
             }
         }
         links.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -173,22 +173,24 @@ pub fn complete(
     if scene.region.is_empty() {
         return Err(CompleteError::Empty);
     }
-    let mut run = Completion { goal, changes: Vec::new(), banned: Vec::new(), trials: 0 };
+    let mut run = Completion { goal, changes: Vec::new(), banned: Vec::new(), trials: 0, nearest: None };
     let scene = run.tidied(scene)?;
     run.met(scene)
 }
 
 /// The work on one pattern.
-struct Completion<'g> {
-    goal: &'g Goal,
+struct Completion<'a> {
+    goal: &'a Goal,
     changes: Vec<Change>,
     /// Changes that brought nothing.
     banned: Vec<Change>,
     trials: usize,
+    /// The pattern and its changes before a hole was opened that had to be made up for.
+    nearest: Option<(Work<'a>, Vec<Change>)>,
 }
 
-impl Completion<'_> {
-    fn tidied<'a>(&mut self, scene: Scene<'a>) -> Result<Scene<'a>, CompleteError> {
+impl<'a> Completion<'a> {
+    fn tidied(&mut self, scene: Scene<'a>) -> Result<Scene<'a>, CompleteError> {
         let mut steps = tidy::tidied(&scene);
         steps.extend(slits::filled(&scene));
         if steps.is_empty() {
@@ -200,7 +202,7 @@ impl Completion<'_> {
     }
 
     /// Rounds of changes until the goal is met, or nothing helps any more.
-    fn met(mut self, mut scene: Scene) -> Result<Completed, CompleteError> {
+    fn met(mut self, mut scene: Scene<'a>) -> Result<Completed, CompleteError> {
         let mut is_bold = false;
         loop {
             let distance = self.distance(&scene.region);
@@ -234,26 +236,27 @@ impl Completion<'_> {
         let (components, holes) = (scene.region.components(), scene.region.holes());
         let [too_many, too_few] = off(self.goal.components, components);
         let [holes_too_many, holes_too_few] = off(self.goal.holes, holes);
-        let mut plans: [(usize, &dyn Fn(usize) -> Vec<Step>); 4] = [
-            (too_many, &|needed| planner.joins(needed)),
-            (holes_too_many, &|needed| planner.openings(needed)),
-            (too_few, &|needed| planner.partings(needed)),
-            (holes_too_few, &|needed| planner.closings(needed)),
-        ];
-        plans
-            .iter_mut()
-            .filter(|(needed, _)| *needed > 0)
-            .map(|(needed, plan)| plan(*needed))
-            .find(|steps| !steps.is_empty())
-            .unwrap_or_default()
+        if too_many > 0 {
+            let steps = planner.joins(too_many);
+            if !steps.is_empty() {
+                return steps;
+            }
+        }
+        if holes_too_many > 0 {
+            let steps = planner.openings(holes_too_many);
+            if !steps.is_empty() {
+                return steps;
+            }
+        }
+        // A hole that is missing may be one that was opened to part what is around it.
+        match too_few > 0 {
+            true => planner.partings(too_few),
+            false => planner.closings(holes_too_few),
+        }
     }
 
     /// The scene with those of the steps that bring the counts nearer, and whether there were any.
-    fn tried<'a>(
-        &mut self,
-        mut scene: Scene<'a>,
-        steps: &[Step],
-    ) -> Result<(Scene<'a>, bool), CompleteError> {
+    fn tried(&mut self, mut scene: Scene<'a>, steps: &[Step]) -> Result<(Scene<'a>, bool), CompleteError> {
         if steps.is_empty() || self.trials >= MOST_TRIALS {
             return Ok((scene, false));
         }
@@ -286,17 +289,19 @@ impl Completion<'_> {
 
     /// Where components are missing and every strand is part of a ring, a ring is opened, though that alone is no use; then a cut parts
     /// what is left of it, and the hole is made up for elsewhere.
-    fn opened_to_part<'a>(&mut self, scene: Scene<'a>) -> Result<(Scene<'a>, bool), CompleteError> {
+    fn opened_to_part(&mut self, scene: Scene<'a>) -> Result<(Scene<'a>, bool), CompleteError> {
         let [_, too_few] = off(self.goal.components, scene.region.components());
         if too_few == 0 || self.trials >= MOST_TRIALS {
             return Ok((scene, false));
         }
         let planner =
             Planner { scene: &scene, is_bold: false, is_banned: &|step| self.banned.contains(&step.change) };
-        let steps = planner.openings(1);
-        let [step] = &steps[..] else { return Ok((scene, false)) };
+        let Some(step) = planner.opening_to_part() else { return Ok((scene, false)) };
         self.trials += 1;
         let mut work = scene.work.clone();
+        if self.nearest.is_none() {
+            self.nearest = Some((work.clone(), self.changes.clone()));
+        }
         step.carry_out(&mut work);
         self.changes.push(step.change);
         Ok((Scene::new(work)?, true))
@@ -316,7 +321,13 @@ impl Completion<'_> {
         })
     }
 
-    fn refusal(self, scene: Scene) -> Result<CompleteError, CompleteError> {
+    fn refusal(mut self, mut scene: Scene<'a>) -> Result<CompleteError, CompleteError> {
+        if let Some((work, changes)) = self.nearest.take() {
+            let before = Scene::new(work)?;
+            if self.distance(&before.region) < self.distance(&scene.region) {
+                (scene, self.changes) = (before, changes);
+            }
+        }
         let (components, holes) = (scene.region.components(), scene.region.holes());
         let wanted = self.goal_in_words();
         let [too_many, too_few] = off(self.goal.components, components);
