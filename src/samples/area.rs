@@ -4,7 +4,11 @@ use glam::DVec2;
 
 use crate::planar::{EdgeIndex, Region};
 
+/// Corners of an area that is grown are round within this part of what it grows by.
+const GROWN_CHORD: f64 = 0.05;
+
 /// The output domain D (Tu 2020 §4.3.1).
+#[derive(Clone)]
 pub struct Area {
     region: Region,
     index: EdgeIndex,
@@ -20,6 +24,12 @@ impl Area {
     /// The same, where x and x + `lap_mm` are one place. The region has to reach over one lap, from x = 0, and one half more on both sides.
     pub fn rolled(region: Region, lap_mm: f64) -> Self {
         Self { lap_mm: Some(lap_mm), ..Self::new(region) }
+    }
+
+    /// The same with so much more all around.
+    pub fn grown(&self, by_mm: f64) -> Self {
+        let region = self.region.offset(by_mm, GROWN_CHORD * by_mm);
+        Self { lap_mm: self.lap_mm, ..Self::new(region) }
     }
 
     /// The region.

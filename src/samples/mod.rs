@@ -10,11 +10,39 @@
 //! ```
 
 mod area;
+mod assignment;
+mod border;
 mod drawing;
+mod draws;
+mod edges;
+mod elements;
+mod existence;
+mod given;
 mod graph;
+mod level;
+mod lines;
+mod neighbours;
 mod options;
+mod orientations;
+mod parallel;
+mod positions;
+mod resample;
+mod sampling;
+mod scale;
+mod search;
+mod similarity;
+mod source;
+mod start;
+mod synthesis;
 
 pub use area::Area;
 pub use drawing::{Curve, Drawing, Element};
+pub use elements::{Class, Elements, Placed, Similarity};
+pub use given::Given;
 pub use graph::{Adjacency, Edge, Graph, Kind, Sample};
-pub use options::{Level, Options, Start, UnmatchedPrice, Without};
+pub use level::{LevelReport, MOST_NEIGHBOURS, SampleError};
+pub use options::{Border, Level, Options, Start, UnmatchedPrice, Without};
+pub use scale::default_levels;
+pub use sampling::{Resolution, sampled};
+pub use start::Clone;
+pub use synthesis::{Synthesis, synthesize};
