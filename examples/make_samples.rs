@@ -76,9 +76,8 @@ fn branches() -> String {
     for _ in 0..60 {
         let mut pulls: Vec<Option<Point>> = vec![None; nodes.len()];
         for &goal in &goals {
-            let near = (0..nodes.len()).min_by(|&a, &b| {
-                distance(nodes[a].0, goal).total_cmp(&distance(nodes[b].0, goal))
-            });
+            let near = (0..nodes.len())
+                .min_by(|&a, &b| distance(nodes[a].0, goal).total_cmp(&distance(nodes[b].0, goal)));
             let near = near.expect("there are roots");
             let d = distance(nodes[near].0, goal);
             if d < 11.0 {
@@ -93,9 +92,10 @@ fn branches() -> String {
             let length = x.hypot(y);
             let p = nodes[i].0;
             let next = [p[0] + STEP * x / length, p[1] + STEP * y / length];
-            let is_free = nodes.iter().enumerate().all(|(j, node)| {
-                j == i || Some(j) == nodes[i].1 || distance(node.0, next) > STEP * 0.9
-            });
+            let is_free = nodes
+                .iter()
+                .enumerate()
+                .all(|(j, node)| j == i || Some(j) == nodes[i].1 || distance(node.0, next) > STEP * 0.9);
             if length > 1e-6 && is_free {
                 nodes.push((next, Some(i)));
             }
@@ -113,8 +113,10 @@ fn branches() -> String {
     }
     // A path from every root and every fork to the next end or fork; the straightest child goes on.
     let mut svg = String::new();
-    let mut starts: Vec<(Option<usize>, usize)> =
-        (0..nodes.len()).filter(|&i| nodes[i].1.is_none() && !children[i].is_empty()).map(|i| (None, i)).collect();
+    let mut starts: Vec<(Option<usize>, usize)> = (0..nodes.len())
+        .filter(|&i| nodes[i].1.is_none() && !children[i].is_empty())
+        .map(|i| (None, i))
+        .collect();
     while let Some((before, first)) = starts.pop() {
         let mut path: Vec<usize> = before.into_iter().chain([first]).collect();
         loop {
@@ -160,15 +162,16 @@ fn scales() -> String {
                 let _ = write!(
                     d,
                     "M{from:.3} {y:.3}C{from:.3} {:.3} {:.3} {:.3} {:.3} {:.3}",
-                    y + k, middle[0] - k, middle[1], middle[0], middle[1]
+                    y + k,
+                    middle[0] - k,
+                    middle[1],
+                    middle[0],
+                    middle[1]
                 );
             }
             if !is_cut[1] {
-                let _ = write!(
-                    d,
-                    "C{:.3} {:.3} {to:.3} {:.3} {to:.3} {y:.3}",
-                    middle[0] + k, middle[1], y + k
-                );
+                let _ =
+                    write!(d, "C{:.3} {:.3} {to:.3} {:.3} {to:.3} {y:.3}", middle[0] + k, middle[1], y + k);
             }
             let _ = writeln!(svg, "<path d=\"{d}\"/>");
         }
@@ -344,7 +347,12 @@ fn smooth(svg: &mut String, points: &[Point]) {
         let _ = write!(
             svg,
             "C{:.3} {:.3} {:.3} {:.3} {:.3} {:.3}",
-            p[0] + t[0], p[1] + t[1], q[0] - s[0], q[1] - s[1], q[0], q[1]
+            p[0] + t[0],
+            p[1] + t[1],
+            q[0] - s[0],
+            q[1] - s[1],
+            q[0],
+            q[1]
         );
     }
     svg.push_str("\"/>\n");

@@ -118,7 +118,9 @@ impl Assignment {
             let mut next: Option<(f64, u32)> = None;
             for &column in &self.touched {
                 let d = self.distance[column as usize];
-                if !self.is_done[column as usize] && next.is_none_or(|(least, which)| (d, column) < (least, which)) {
+                if !self.is_done[column as usize]
+                    && next.is_none_or(|(least, which)| (d, column) < (least, which))
+                {
                     next = Some((d, column));
                 }
             }

@@ -44,7 +44,8 @@ pub fn join(graph: &mut Graph, source: &Source, matchings: &[Matching], area: &A
                     vote.edges += weight;
                     let [a, b] = edge.handles;
                     let handles = if edge.ends[0] == input { [a, b] } else { [b, a] };
-                    vote.handles = [vote.handles[0] + handles[0] * weight, vote.handles[1] + handles[1] * weight];
+                    vote.handles =
+                        [vote.handles[0] + handles[0] * weight, vote.handles[1] + handles[1] * weight];
                 }
             }
         }
@@ -63,7 +64,8 @@ pub fn join(graph: &mut Graph, source: &Source, matchings: &[Matching], area: &A
     edges.extend(given(graph));
     edges.sort_by(|a, b| b.confidence.total_cmp(&a.confidence).then(a.ends.cmp(&b.ends)));
     edges.dedup_by_key(|edge| edge.ends);
-    let wanted: Vec<f64> = degrees.iter().map(|[sum, count]| if *count > 0.0 { sum / count } else { 0.0 }).collect();
+    let wanted: Vec<f64> =
+        degrees.iter().map(|[sum, count]| if *count > 0.0 { sum / count } else { 0.0 }).collect();
     choose(graph, edges, &wanted, area, options.least_edge);
 }
 

@@ -82,7 +82,12 @@ pub fn missing(
                 }
                 None => {
                     cells.entry((x, y)).or_default().push(clusters.len());
-                    clusters.push(Cluster { kind, sum: at * matching.weight, weight: matching.weight, members: vec![(at, input)] });
+                    clusters.push(Cluster {
+                        kind,
+                        sum: at * matching.weight,
+                        weight: matching.weight,
+                        members: vec![(at, input)],
+                    });
                 }
             }
         }
@@ -100,10 +105,9 @@ pub fn missing(
                 return None;
             }
             // The member in the middle stands for all.
-            let &(_, input) = cluster
-                .members
-                .iter()
-                .min_by(|a, b| a.0.distance_squared(at).total_cmp(&b.0.distance_squared(at)).then(a.1.cmp(&b.1)))?;
+            let &(_, input) = cluster.members.iter().min_by(|a, b| {
+                a.0.distance_squared(at).total_cmp(&b.0.distance_squared(at)).then(a.1.cmp(&b.1))
+            })?;
             let like = &source.graph.samples[input];
             let sample = Sample { at, existence: existence.min(1.0), is_given: false, ..like.clone() };
             Some((sample, input))

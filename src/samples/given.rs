@@ -9,7 +9,7 @@ use super::elements::Elements;
 use super::graph::Graph;
 use super::neighbours::Buckets;
 use super::sampling::{Resolution, sampled};
-use super::start::Clone as Copied;
+use super::start::CloneBox;
 
 /// What is given.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -17,7 +17,7 @@ pub struct Given {
     /// Strokes that are there and stay, in the area or beside it.
     pub drawing: Drawing,
     /// Boxes of the exemplar that are copied before anything else.
-    pub clones: Vec<Copied>,
+    pub clones: Vec<CloneBox>,
 }
 
 impl Given {
@@ -54,12 +54,15 @@ pub(super) fn exchange(graph: &mut Graph, found: &mut Vec<Option<usize>>, given:
     }
     graph.edges.sort_by_key(|edge| edge.ends);
     graph.edges.dedup_by_key(|edge| edge.ends);
-    let stays: Vec<bool> = graph.samples.iter().map(|s| !s.is_given).chain(given.samples.iter().map(|_| true)).collect();
+    let stays: Vec<bool> =
+        graph.samples.iter().map(|s| !s.is_given).chain(given.samples.iter().map(|_| true)).collect();
     graph.samples.extend(given.samples);
-    graph.edges.extend(given.edges.into_iter().map(|edge| super::graph::Edge {
-        ends: edge.ends.map(|end| end + first),
-        ..edge
-    }));
+    graph.edges.extend(
+        given
+            .edges
+            .into_iter()
+            .map(|edge| super::graph::Edge { ends: edge.ends.map(|end| end + first), ..edge }),
+    );
     found.extend(points.iter().map(|_| None));
     let mut kept = stays.iter();
     found.retain(|_| *kept.next().expect("one for each sample"));

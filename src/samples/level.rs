@@ -181,4 +181,3 @@ pub(super) fn check_source(source: &Source, level: Level) -> Result<(), SampleEr
         false => Ok(()),
     }
 }
-

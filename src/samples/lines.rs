@@ -136,9 +136,11 @@ pub fn meetings(lines: &[Line], reach: impl Fn(&Line, &Line) -> f64) -> Vec<Meet
                 if other.line < number || is_next {
                     continue;
                 }
-                let (c, d) = (lines[other.line].points[other.chord], lines[other.line].points[other.chord + 1]);
+                let (c, d) =
+                    (lines[other.line].points[other.chord], lines[other.line].points[other.chord + 1]);
                 if let Some([t, s]) = crossing(a, b, c, d) {
-                    let along = |l: &Line, i: usize, t: f64| l.along_mm[i] + t * (l.along_mm[i + 1] - l.along_mm[i]);
+                    let along =
+                        |l: &Line, i: usize, t: f64| l.along_mm[i] + t * (l.along_mm[i + 1] - l.along_mm[i]);
                     meetings.push([
                         (number, along(line, i, t)),
                         (other.line, along(&lines[other.line], other.chord, s)),

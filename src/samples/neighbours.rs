@@ -86,8 +86,16 @@ impl<'a> Buckets<'a> {
             None => (size.x / side_mm).floor() as usize + 1,
         };
         let rows = (size.y / side_mm).floor() as usize + 1;
-        let mut buckets =
-            Self { points, area, low, side_mm, columns, rows, starts: vec![0; columns * rows + 1], order: Vec::new() };
+        let mut buckets = Self {
+            points,
+            area,
+            low,
+            side_mm,
+            columns,
+            rows,
+            starts: vec![0; columns * rows + 1],
+            order: Vec::new(),
+        };
         let at: Vec<usize> = points.iter().map(|&p| buckets.bucket(home(p))).collect();
         at.iter().for_each(|&b| buckets.starts[b + 1] += 1);
         for b in 0..columns * rows {
@@ -124,7 +132,8 @@ impl<'a> Buckets<'a> {
         let home = self.area.map_or(p, |area| area.home(p));
         let way = |q: DVec2| self.area.map_or(q - p, |area| area.way(p, q));
         let (first_row, last_row) = (self.row(home.y - radius_mm), self.row(home.y + radius_mm));
-        let is_whole = self.lap_mm().is_some_and(|lap_mm| 2.0 * radius_mm >= lap_mm * (1.0 - 2.0 / self.columns as f64));
+        let is_whole =
+            self.lap_mm().is_some_and(|lap_mm| 2.0 * radius_mm >= lap_mm * (1.0 - 2.0 / self.columns as f64));
         let columns: Vec<usize> = match self.lap_mm() {
             Some(_) if is_whole => (0..self.columns).collect(),
             Some(lap_mm) => {

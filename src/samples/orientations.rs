@@ -70,7 +70,9 @@ pub fn turn_all(graph: &mut Graph, source: &Source, matchings: &[Matching], seed
             number += theirs.orientations.len() as f64;
             width_mm += theirs.width_mm;
             let mut is_taken = vec![false; theirs.orientations.len()];
-            for (own, other) in matched(&sample.orientations, &theirs.orientations, &mut problem).into_iter().enumerate() {
+            for (own, other) in
+                matched(&sample.orientations, &theirs.orientations, &mut problem).into_iter().enumerate()
+            {
                 if let Some(other) = other {
                     votes[own].add(theirs.orientations[other]);
                     is_taken[other] = true;
@@ -91,7 +93,8 @@ pub fn turn_all(graph: &mut Graph, source: &Source, matchings: &[Matching], seed
             })
             .collect();
         while own.len() > wanted {
-            let worst = (0..own.len()).max_by(|&a, &b| own[a].1.total_cmp(&own[b].1)).expect("there is one more");
+            let worst =
+                (0..own.len()).max_by(|&a, &b| own[a].1.total_cmp(&own[b].1)).expect("there is one more");
             own.remove(worst);
         }
         let mut purpose = purpose.to_vec();

@@ -109,7 +109,8 @@ fn lay(
     let mut owners = vec![start];
     for &(number, from, to) in chain {
         let edge = &graph.edges[number];
-        let [out, back] = if edge.ends[0] == from { edge.handles } else { [edge.handles[1], edge.handles[0]] };
+        let [out, back] =
+            if edge.ends[0] == from { edge.handles } else { [edge.handles[1], edge.handles[0]] };
         let a = points[points.len() - 1];
         let b = a + area.way(graph.samples[from].at, graph.samples[to].at);
         let at = |p: DVec2| Point::new(p.x, p.y);

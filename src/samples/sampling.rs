@@ -230,7 +230,8 @@ fn lay(
 pub fn fitted_handles(points: &[DVec2]) -> [DVec2; 2] {
     let last = points.len() - 1;
     let (a, b) = (points[0], points[last]);
-    let tangent = |p: DVec2, q: DVec2, r: DVec2| (4.0 * q - 3.0 * p - r).normalize_or(q - p).normalize_or_zero();
+    let tangent =
+        |p: DVec2, q: DVec2, r: DVec2| (4.0 * q - 3.0 * p - r).normalize_or(q - p).normalize_or_zero();
     let t = [tangent(a, points[1], points[2]), tangent(b, points[last - 1], points[last - 2])];
     let mut along = vec![0.0];
     for ends in points.windows(2) {
@@ -252,10 +253,8 @@ pub fn fitted_handles(points: &[DVec2]) -> [DVec2; 2] {
         }
     }
     let determinant = c[0][0] * c[1][1] - c[0][1] * c[1][0];
-    let lengths = [
-        (x[0] * c[1][1] - x[1] * c[0][1]) / determinant,
-        (x[1] * c[0][0] - x[0] * c[1][0]) / determinant,
-    ];
+    let lengths =
+        [(x[0] * c[1][1] - x[1] * c[0][1]) / determinant, (x[1] * c[0][0] - x[0] * c[1][0]) / determinant];
     let is_sound = lengths.iter().all(|l| l.is_finite() && *l > 0.1 * length && *l < length);
     let lengths = if is_sound { lengths } else { [length / 3.0; 2] };
     [t[0] * lengths[0], t[1] * lengths[1]]

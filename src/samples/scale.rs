@@ -37,9 +37,13 @@ pub fn default_levels(drawing: &Drawing, levels: usize) -> Vec<Level> {
             (SPACINGS[number] * apart_mm).clamp(SPACING_RANGE[0] * side_mm, SPACING_RANGE[1] * side_mm);
         let resolution = Resolution { level: number, levels, spacing_mm };
         let samples = sampled(drawing, &elements, resolution).samples.len().max(1) as f64;
-        let radius_mm = (NEIGHBOURS[number] * size.element_product() / (std::f64::consts::PI * samples)).sqrt();
+        let radius_mm =
+            (NEIGHBOURS[number] * size.element_product() / (std::f64::consts::PI * samples)).sqrt();
         let least_mm = LEAST_RADIUS * spacing_mm;
-        Level { radius_mm: rounded(radius_mm.min(MOST_RADIUS * side_mm).max(least_mm)), spacing_mm: rounded(spacing_mm) }
+        Level {
+            radius_mm: rounded(radius_mm.min(MOST_RADIUS * side_mm).max(least_mm)),
+            spacing_mm: rounded(spacing_mm),
+        }
     };
     (0..levels).map(level).collect()
 }

@@ -134,7 +134,8 @@ pub fn search(
                 };
                 for &(other, offset) in &route.neighbours[s] {
                     let at = place_of[other];
-                    let (theirs, _) = if (first..place).contains(&at) { found[at - first] } else { before[other] };
+                    let (theirs, _) =
+                        if (first..place).contains(&at) { found[at - first] } else { before[other] };
                     let aim = source.graph.samples[theirs].at - offset;
                     if let Some(input) = finder.nearest(aim) {
                         attempt(input, &mut best, &mut cost);

@@ -171,7 +171,8 @@ fn mean_nearest(near: &Neighbourhoods, graph: &Graph) -> f64 {
     };
     let elements = (0..graph.samples.len()).filter(|&s| graph.samples[s].kind != Kind::Curve);
     let found: Vec<f64> = elements.filter_map(nearest).collect();
-    let widest = (0..graph.samples.len()).flat_map(|s| near.of(s)).map(|n| n.offset.length()).fold(0.0, f64::max);
+    let widest =
+        (0..graph.samples.len()).flat_map(|s| near.of(s)).map(|n| n.offset.length()).fold(0.0, f64::max);
     if found.is_empty() { 0.5 * widest } else { found.iter().sum::<f64>() / found.len() as f64 }
 }
 
@@ -215,9 +216,9 @@ fn least(few: &[DVec2], many: &[DVec2], taken: u32) -> f64 {
     // Stars of more than so many rays are rare, and trying all ways would take for ever: the nearest ray that is free will do.
     let is_free = |j: &usize| taken & (1 << (j % 32)) == 0;
     if many.len() > 6 {
-        let nearest = (0..many.len().min(32)).filter(is_free).min_by(|&i, &j| {
-            first.distance_squared(many[i]).total_cmp(&first.distance_squared(many[j]))
-        });
+        let nearest = (0..many.len().min(32))
+            .filter(is_free)
+            .min_by(|&i, &j| first.distance_squared(many[i]).total_cmp(&first.distance_squared(many[j])));
         return nearest.map_or(0.0, |j| first.distance(many[j]) + least(rest, many, taken | 1 << j));
     }
     let ways = (0..many.len()).filter(is_free);

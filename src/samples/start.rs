@@ -25,7 +25,7 @@ const SAME: f64 = 0.6;
 
 /// A patch that is laid before all others: the middle of a box of the exemplar, its half size, and the place where its middle goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Clone {
+pub struct CloneBox {
     /// The middle of the box in the exemplar, in millimetres.
     pub from_mm: DVec2,
     /// Half of its width and height.
@@ -58,7 +58,7 @@ struct Patcher<'a> {
 pub fn patches(
     source: &Source,
     given: Graph,
-    clones: &[Clone],
+    clones: &[CloneBox],
     area: &Area,
     options: &Options,
     spacing_mm: f64,
@@ -83,7 +83,8 @@ pub fn patches(
     let half = DVec2::splat(0.5 * PATCH * (high - low).min_element());
     let step = 2.0 * half * (1.0 - OVERLAP);
     let size = area_high - area_low;
-    let count = ((size - if area.lap_mm().is_some() { DVec2::new(0.0, 2.0 * half.y) } else { 2.0 * half }) / step)
+    let count = ((size - if area.lap_mm().is_some() { DVec2::new(0.0, 2.0 * half.y) } else { 2.0 * half })
+        / step)
         .ceil()
         .max(DVec2::ZERO);
     let [columns, rows] = [count.x as usize + usize::from(area.lap_mm().is_none()), count.y as usize + 1];
@@ -155,7 +156,9 @@ impl Patcher<'_> {
             let mut nearest: Option<(f64, usize)> = None;
             buckets.within(from + offset, reach, |i, way| {
                 let d = way.length();
-                if inputs[i].kind == kind && nearest.is_none_or(|(least, j)| d < least || (d == least && i < j)) {
+                if inputs[i].kind == kind
+                    && nearest.is_none_or(|(least, j)| d < least || (d == least && i < j))
+                {
                     nearest = Some((d, i));
                 }
             });
@@ -165,7 +168,11 @@ impl Patcher<'_> {
         let mut extra = 0usize;
         buckets.within(from, half.length(), |i, way| {
             let is_in = way.abs().cmple(half).all();
-            if is_in && !is_used.contains(&i) && self.is_covered(middle + way) && self.area.contains(middle + way) {
+            if is_in
+                && !is_used.contains(&i)
+                && self.is_covered(middle + way)
+                && self.area.contains(middle + way)
+            {
                 extra += 1;
             }
         });
@@ -198,7 +205,11 @@ impl Patcher<'_> {
                 copy_of.insert(i, s);
             } else if self.area.contains(at) && !self.is_covered(at) {
                 let number = self.started.graph.samples.len();
-                self.started.graph.samples.push(super::graph::Sample { at, is_given: false, ..input.clone() });
+                self.started.graph.samples.push(super::graph::Sample {
+                    at,
+                    is_given: false,
+                    ..input.clone()
+                });
                 self.started.origins.push(Some(i));
                 copy_of.insert(i, number);
                 fresh.insert(number);

@@ -106,7 +106,7 @@ struct Run<'a> {
 
 impl Run<'_> {
     /// The first samples of the coarsest level.
-    fn begin(&self, output: &mut Output, given: Graph, clones: &[start::Clone]) {
+    fn begin(&self, output: &mut Output, given: Graph, clones: &[start::CloneBox]) {
         let started = match self.options.start {
             Start::Patches => {
                 start::patches(self.source, given, clones, self.area, self.options, self.level.spacing_mm)
@@ -119,7 +119,12 @@ impl Run<'_> {
             let sample = &mut output.graph.samples[s];
             if let Kind::Element { class, .. } = sample.kind {
                 let like = origin.map(|i| self.source.graph.samples[i].element);
-                place(&mut output.placed, sample, class, like.map(|e| self.elements.placed[e as usize].similarity));
+                place(
+                    &mut output.placed,
+                    sample,
+                    class,
+                    like.map(|e| self.elements.placed[e as usize].similarity),
+                );
             }
         }
     }
@@ -144,7 +149,9 @@ impl Run<'_> {
             .iter()
             .zip(&parents)
             .map(|(s, &parent)| {
-                let aim = self.source.side_of(output.found[parent]?, self.area.way(coarse.samples[parent].at, s.at));
+                let aim = self
+                    .source
+                    .side_of(output.found[parent]?, self.area.way(coarse.samples[parent].at, s.at));
                 finders.get(&Kind::Curve)?.nearest(aim?)
             })
             .collect();
@@ -259,12 +266,18 @@ impl Run<'_> {
             self.remove(output);
         }
         let origins: Vec<Option<usize>> = fresh.iter().map(|(_, input)| Some(*input)).collect();
-        let added = Graph { samples: fresh.into_iter().map(|(sample, _)| sample).collect(), ..Graph::default() };
+        let added =
+            Graph { samples: fresh.into_iter().map(|(sample, _)| sample).collect(), ..Graph::default() };
         output.found.extend(self.middles_near(&added, &origins));
         for (mut sample, origin) in added.samples.into_iter().zip(origins) {
             if let Kind::Element { class, .. } = sample.kind {
                 let like = origin.map(|i| self.source.graph.samples[i].element);
-                place(&mut output.placed, &mut sample, class, like.map(|e| self.elements.placed[e as usize].similarity));
+                place(
+                    &mut output.placed,
+                    &mut sample,
+                    class,
+                    like.map(|e| self.elements.placed[e as usize].similarity),
+                );
             }
             output.graph.samples.push(sample);
         }
@@ -285,7 +298,9 @@ impl Run<'_> {
             .map(|sample| {
                 let existence = match sample.kind {
                     Kind::Curve => sample.existence,
-                    Kind::Element { .. } => belief[sample.element as usize][0] / belief[sample.element as usize][1],
+                    Kind::Element { .. } => {
+                        belief[sample.element as usize][0] / belief[sample.element as usize][1]
+                    }
                 };
                 sample.is_given || existence >= self.options.least_existence
             })
@@ -297,8 +312,14 @@ impl Run<'_> {
 
     /// No smaller and no larger than the exemplar's elements of the class are.
     fn in_size(&self, class: u32, fitted: Similarity) -> Similarity {
-        let sizes = self.elements.placed.iter().filter(|placed| placed.class == class).map(|p| p.similarity.turn.length());
-        let (least, most) = sizes.fold((f64::INFINITY, 0.0_f64), |(least, most), size| (least.min(size), most.max(size)));
+        let sizes = self
+            .elements
+            .placed
+            .iter()
+            .filter(|placed| placed.class == class)
+            .map(|p| p.similarity.turn.length());
+        let (least, most) =
+            sizes.fold((f64::INFINITY, 0.0_f64), |(least, most), size| (least.min(size), most.max(size)));
         let size = fitted.turn.length();
         let turn = if size > 0.0 { fitted.turn / size } else { DVec2::X };
         Similarity { turn: turn * size.clamp(least, most), ..fitted }
@@ -328,7 +349,8 @@ impl Run<'_> {
                     // Samples of one element lie within it, on one side of a seam.
                     let middle = old.similarity.shift;
                     let from: Vec<DVec2> = targets.iter().map(|t| points[t.0 as usize]).collect();
-                    let to: Vec<DVec2> = targets.iter().map(|t| middle + self.area.way(middle, t.1)).collect();
+                    let to: Vec<DVec2> =
+                        targets.iter().map(|t| middle + self.area.way(middle, t.1)).collect();
                     self.in_size(old.class, Similarity::fitted(&from, &to))
                 }
             };
