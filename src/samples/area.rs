@@ -85,3 +85,43 @@ impl Area {
         }
     }
 }
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::planar::{FillRule, Grid};
+
+    fn rectangle(low: DVec2, high: DVec2) -> Region {
+        let grid = Grid::for_extent(1000.0).unwrap();
+        let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
+        let path = corners.iter().map(|&p| grid.snap(p).unwrap()).collect();
+        Region::fill(grid, &[path], FillRule::NonZero)
+    }
+
+    pub(in crate::samples) fn square(side_mm: f64) -> Area {
+        Area::new(rectangle(DVec2::ZERO, DVec2::splat(side_mm)))
+    }
+
+    pub(in crate::samples) fn rolled(lap_mm: f64, height_mm: f64) -> Area {
+        let low = DVec2::new(-0.5 * lap_mm, 0.0);
+        Area::rolled(rectangle(low, DVec2::new(1.5 * lap_mm, height_mm)), lap_mm)
+    }
+
+    #[test]
+    fn the_short_way_leads_over_the_seam() {
+        let area = rolled(100.0, 20.0);
+        let way = area.way(DVec2::new(95.0, 3.0), DVec2::new(5.0, 4.0));
+        assert_eq!(way, DVec2::new(10.0, 1.0));
+        assert_eq!(area.home(DVec2::new(-5.0, 3.0)), DVec2::new(95.0, 3.0));
+        assert!(area.contains(DVec2::new(205.0, 3.0)) && !area.contains(DVec2::new(205.0, 30.0)));
+        assert_eq!(square(10.0).way(DVec2::ZERO, DVec2::new(9.0, 0.0)), DVec2::new(9.0, 0.0));
+    }
+
+    #[test]
+    fn what_is_outside_is_drawn_to_the_border() {
+        let area = square(10.0);
+        assert_eq!(area.nearest(DVec2::new(12.0, 4.0)), DVec2::new(10.0, 4.0));
+        assert_eq!(area.depth_mm(DVec2::new(4.0, 3.0)), 3.0);
+        assert!(area.grown(5.0).contains(DVec2::new(-4.0, 5.0)));
+    }
+}

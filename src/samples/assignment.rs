@@ -156,3 +156,77 @@ impl Assignment {
         (column < self.columns).then_some(column)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use pathfinding::kuhn_munkres::kuhn_munkres_min;
+    use pathfinding::matrix::Matrix;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Rows of prices by column, `None` where a row does not know the column; and what it costs each to stay single.
+    type Problem = (Vec<Vec<Option<u32>>>, Vec<u32>);
+
+    fn problems(rows: usize, columns: usize) -> impl Strategy<Value = Problem> {
+        (1..=rows, 0..=columns).prop_flat_map(|(rows, columns)| {
+            let row = prop::collection::vec(prop::option::weighted(0.7, 0u32..30), columns);
+            (prop::collection::vec(row, rows), prop::collection::vec(0u32..40, rows))
+        })
+    }
+
+    fn solved((prices, single): &Problem) -> (Assignment, f64) {
+        let mut problem = Assignment::default();
+        problem.clear(prices[0].len());
+        for (row, &alone) in prices.iter().zip(single) {
+            for (column, price) in row.iter().enumerate() {
+                if let Some(price) = price {
+                    problem.price(column, f64::from(*price));
+                }
+            }
+            problem.end_row(f64::from(alone));
+        }
+        assert!(problem.bound() <= problem.clone().solve());
+        let sum = problem.solve();
+        (problem, sum)
+    }
+
+    /// The least sum of all ways.
+    fn brute((prices, single): &Problem, row: usize, taken: u32) -> u32 {
+        if row == prices.len() {
+            return 0;
+        }
+        let alone = single[row] + brute(&(prices.clone(), single.clone()), row + 1, taken);
+        let with = prices[row].iter().enumerate().filter(|(column, _)| taken & (1 << column) == 0);
+        let with = with.filter_map(|(column, price)| {
+            Some((*price)? + brute(&(prices.clone(), single.clone()), row + 1, taken | 1 << column))
+        });
+        with.chain([alone]).min().expect("a row can stay single")
+    }
+
+    proptest! {
+        #[test]
+        fn no_way_is_cheaper(problem in problems(5, 5)) {
+            let (made, sum) = solved(&problem);
+            prop_assert_eq!(sum, f64::from(brute(&problem, 0, 0)));
+            let mut taken: Vec<usize> = (0..problem.0.len()).filter_map(|row| made.column(row)).collect();
+            let count = taken.len();
+            taken.sort_unstable();
+            taken.dedup();
+            prop_assert_eq!(taken.len(), count, "a column was given twice");
+        }
+
+        #[test]
+        fn a_library_finds_nothing_cheaper(problem in problems(30, 40)) {
+            let (_, sum) = solved(&problem);
+            // In a full matrix every row has a column of its own, at the price of staying single.
+            let (prices, single) = &problem;
+            let matrix = Matrix::from_rows(prices.iter().enumerate().map(|(i, row)| {
+                let known = row.iter().map(|price| price.map_or(100_000, i64::from));
+                let own = (0..single.len()).map(move |j| if i == j { i64::from(single[i]) } else { 100_000 });
+                known.chain(own).collect::<Vec<i64>>()
+            })).expect("rows are as long");
+            prop_assert_eq!(sum as i64, kuhn_munkres_min(&matrix).0);
+        }
+    }
+}

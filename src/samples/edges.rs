@@ -177,3 +177,48 @@ impl<'a> CrossingField<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::area::tests::square;
+    use crate::samples::sampling::curve_sample;
+
+    fn graph(points: &[(f64, f64)]) -> Graph {
+        let samples = points.iter().map(|&(x, y)| curve_sample(DVec2::new(x, y), 1.0)).collect();
+        Graph { samples, ..Graph::default() }
+    }
+
+    fn edge(a: usize, b: usize, confidence: f64) -> Edge {
+        Edge { ends: [a, b], confidence, handles: [DVec2::ZERO; 2] }
+    }
+
+    /// A case like that of Tu 2020 Figure 8: four samples, four possible edges, expected degrees that the greedy solution meets but for one.
+    #[test]
+    fn edges_are_taken_in_the_order_of_their_votes() {
+        let mut four = graph(&[(1.0, 1.0), (9.0, 1.0), (9.0, 9.0), (1.0, 9.0)]);
+        let edges = vec![edge(0, 1, 1.0), edge(1, 2, 0.8), edge(2, 3, 0.6), edge(0, 3, 0.3)];
+        choose(&mut four, edges, &[1.0, 1.9, 2.0, 1.0], &square(10.0), 0.0);
+        let taken: Vec<[usize; 2]> = four.edges.iter().map(|e| e.ends).collect();
+        assert_eq!(taken, [[0, 1], [1, 2], [2, 3]]);
+        assert_eq!(four.unrealised.len(), 1);
+        assert_eq!(four.unrealised[0].ends, [0, 3]);
+    }
+
+    #[test]
+    fn an_edge_that_crosses_a_surer_one_is_not_taken() {
+        let mut cross = graph(&[(1.0, 1.0), (9.0, 9.0), (9.0, 1.0), (1.0, 9.0)]);
+        choose(&mut cross, vec![edge(0, 1, 1.0), edge(2, 3, 0.9)], &[1.0; 4], &square(10.0), 0.0);
+        assert_eq!(cross.edges.len(), 1);
+        assert_eq!(cross.unrealised[0].ends, [2, 3]);
+    }
+
+    #[test]
+    fn what_few_believe_in_is_left() {
+        let mut pair = graph(&[(1.0, 1.0), (9.0, 9.0)]);
+        choose(&mut pair, vec![edge(0, 1, 0.2)], &[1.0; 2], &square(10.0), 0.25);
+        assert!(pair.edges.is_empty());
+        choose(&mut pair, vec![edge(0, 1, 0.2)], &[1.0; 2], &square(10.0), 0.0);
+        assert_eq!(pair.edges.len(), 1);
+    }
+}

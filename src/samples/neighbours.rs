@@ -184,3 +184,40 @@ impl<'a> Buckets<'a> {
         (self.low - home).max(home - high).max(DVec2::ZERO).length()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::samples::area::tests::{rolled, square};
+
+    fn points() -> impl Strategy<Value = Vec<DVec2>> {
+        prop::collection::vec((0.0f64..40.0, 0.0f64..40.0).prop_map(|(x, y)| DVec2::new(x, y)), 1..60)
+    }
+
+    proptest! {
+        #[test]
+        fn all_within_the_radius_are_found(points in points(), radius in 0.5f64..30.0, is_rolled: bool) {
+            let area = if is_rolled { rolled(40.0, 40.0) } else { square(40.0) };
+            let near = Neighbourhoods::new(&points, radius, Some(&area));
+            for (i, &p) in points.iter().enumerate() {
+                let mut found: Vec<usize> = near.of(i).iter().map(|near| near.sample).collect();
+                prop_assert_eq!(found[0], i);
+                found.sort_unstable();
+                let all: Vec<usize> =
+                    (0..points.len()).filter(|&j| area.way(p, points[j]).length() <= radius).collect();
+                prop_assert_eq!(found, all);
+            }
+        }
+
+        #[test]
+        fn the_nearest_is_found(points in points(), x in -20.0f64..60.0, y in -20.0f64..60.0) {
+            let p = DVec2::new(x, y);
+            let buckets = Buckets::new(&points, 3.0, None);
+            let (_, distance) = buckets.nearest(p, |_| true).unwrap();
+            let least = points.iter().map(|q| q.distance(p)).fold(f64::INFINITY, f64::min);
+            prop_assert!((distance - least).abs() < 1e-12);
+        }
+    }
+}

@@ -116,3 +116,28 @@ fn median(directions: &[f64]) -> usize {
     let all = (0..directions.len()).map(|i| (spread(i), i));
     all.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map_or(0, |(_, i)| i)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_go_round() {
+        assert!((turn(0.1, TAU - 0.1) - 0.2).abs() < 1e-12);
+        assert!((turn(3.0, 0.0) - 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn directions_are_matched_with_the_nearest() {
+        let mut problem = Assignment::default();
+        let found = matched(&[0.0, 2.0, 4.0], &[4.1, 6.2], &mut problem);
+        assert_eq!(found, [Some(1), None, Some(0)]);
+    }
+
+    /// As in Tu 2020 Figure 9: of the directions that are left over, the one in the middle comes in.
+    #[test]
+    fn the_median_of_directions_is_the_one_in_the_middle() {
+        assert_eq!(median(&[0.1, 6.2, 6.0]), 1);
+        assert_eq!(median(&[1.0, 1.5, 1.2]), 2);
+    }
+}

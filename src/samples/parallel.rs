@@ -35,3 +35,15 @@ pub fn in_parallel<T: Send>(count: usize, f: impl Fn(usize) -> T + Sync) -> Vec<
     batches.sort_unstable_by_key(|batch| batch.0);
     batches.into_iter().flat_map(|batch| batch.1).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn everything_comes_back_in_order() {
+        for count in [0, 1, 3, 4, 5, 1000] {
+            assert_eq!(in_parallel(count, |i| i * i), (0..count).map(|i| i * i).collect::<Vec<_>>());
+        }
+    }
+}

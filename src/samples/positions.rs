@@ -1,7 +1,6 @@
 //! Positions: the least squares of all offsets that matched neighbourhoods ask for (Tu 2020 §4.3.4, Eq. 13 and 14). The adapter to faer.
 
 use faer::linalg::solvers::Solve;
-use faer::prelude::*;
 use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};

@@ -167,3 +167,31 @@ fn lay(
         before = node;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use kurbo::BezPath;
+
+    use super::*;
+    use crate::samples::area::tests::square;
+    use crate::samples::sampling::{Resolution, sampled};
+    use crate::samples::{Curve, Drawing, Elements};
+
+    #[test]
+    fn a_finer_graph_has_the_same_forks_ends_and_rings() {
+        let paths = ["M5 20C15 5 25 35 35 20", "M20 20V38", "M8 30A4 4 0 1 1 16 30A4 4 0 1 1 8 30Z", "M22 3H34V10"];
+        let curve = |d: &&str| Curve { path: BezPath::from_svg(d).unwrap(), width_mm: 1.0 };
+        let drawing = Drawing { curves: paths.iter().map(curve).collect(), elements: Vec::new() };
+        let resolution = Resolution { level: 0, levels: 1, spacing_mm: 6.0 };
+        let coarse = sampled(&drawing, &Elements::default(), resolution);
+        let (fine, parents) = resampled(&coarse, &square(40.0), 2.0);
+        assert_eq!(parents.len(), fine.samples.len());
+        let census = |graph: &Graph| {
+            let adjacency = graph.adjacency();
+            let of = |k: usize| (0..graph.samples.len()).filter(|&s| adjacency.degree(s) == k).count();
+            (of(0), of(1), of(3), graph.samples.len() as i64 - graph.edges.len() as i64)
+        };
+        assert_eq!(census(&coarse), census(&fine));
+        assert!(fine.samples.len() > 2 * coarse.samples.len());
+    }
+}

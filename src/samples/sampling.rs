@@ -259,3 +259,67 @@ pub fn fitted_handles(points: &[DVec2]) -> [DVec2; 2] {
     let lengths = if is_sound { lengths } else { [length / 3.0; 2] };
     [t[0] * lengths[0], t[1] * lengths[1]]
 }
+
+#[cfg(test)]
+mod tests {
+    use kurbo::BezPath;
+
+    use super::*;
+    use crate::samples::Curve;
+
+    fn graph(paths: &[&str], spacing_mm: f64) -> Graph {
+        let curve = |d: &&str| Curve { path: BezPath::from_svg(d).unwrap(), width_mm: 1.0 };
+        let drawing = Drawing { curves: paths.iter().map(curve).collect(), elements: Vec::new() };
+        sampled(&drawing, &Elements::default(), Resolution { level: 0, levels: 1, spacing_mm })
+    }
+
+    fn degrees(graph: &Graph) -> Vec<usize> {
+        let adjacency = graph.adjacency();
+        let mut degrees: Vec<usize> = (0..graph.samples.len()).map(|s| adjacency.degree(s)).collect();
+        degrees.sort_unstable();
+        degrees
+    }
+
+    #[test]
+    fn lines_that_cross_share_a_sample() {
+        let cross = graph(&["M0 10H20", "M10 0V20"], 5.0);
+        assert_eq!(degrees(&cross), [1, 1, 1, 1, 2, 2, 2, 2, 4]);
+        assert!(cross.samples.iter().any(|s| s.at.distance(DVec2::splat(10.0)) < 1e-9));
+    }
+
+    #[test]
+    fn an_end_on_a_line_is_a_fork_where_ink_meets() {
+        assert_eq!(degrees(&graph(&["M0 10H20", "M10 0V9.7"], 10.0)), [1, 1, 1, 3]);
+        // Beyond half of a pen there is a gap.
+        assert_eq!(degrees(&graph(&["M0 10H20", "M10 0V8.5"], 10.0)), [1, 1, 1, 1, 2]);
+    }
+
+    #[test]
+    fn corners_and_rings_are_sampled() {
+        let corner = graph(&["M0 0H9V9"], 20.0);
+        assert_eq!(degrees(&corner), [1, 1, 2]);
+        let ring = graph(&["M10 0A10 10 0 1 1 -10 0A10 10 0 1 1 10 0Z"], 6.0);
+        assert_eq!(ring.samples.len(), (std::f64::consts::TAU * 10.0 / 6.0).round() as usize);
+        assert!(degrees(&ring).iter().all(|&degree| degree == 2));
+    }
+
+    #[test]
+    fn every_sample_has_as_many_directions_as_edges() {
+        let all = graph(&["M0 10C5 0 15 20 20 10", "M10 0V20", "M3 3H6"], 3.0);
+        let adjacency = all.adjacency();
+        for (s, sample) in all.samples.iter().enumerate() {
+            assert_eq!(sample.orientations.len(), adjacency.degree(s));
+        }
+        assert!(all.edges.iter().all(|e| e.ends[0] < e.ends[1]));
+    }
+
+    #[test]
+    fn handles_follow_the_curve() {
+        // A quarter of a circle has handles of 0.5523 radii.
+        let points: Vec<DVec2> =
+            (0..=12).map(|i| DVec2::from_angle(std::f64::consts::FRAC_PI_2 * f64::from(i) / 12.0)).collect();
+        let [out, back] = fitted_handles(&points);
+        assert!((out - DVec2::new(0.0, 0.5523)).length() < 0.01, "{out}");
+        assert!((back - DVec2::new(0.5523, 0.0)).length() < 0.01, "{back}");
+    }
+}
