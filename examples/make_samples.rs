@@ -53,91 +53,44 @@ impl Random {
     }
 }
 
-/// Trees that grow upwards into free space, by space colonization (Runions, Lane and Prusinkiewicz 2007).
+/// Small trees that lean this way and that, with twigs on both sides.
 fn branches() -> String {
-    const STEP: f64 = 1.5;
     let mut random = Random(4);
-    let mut goals: Vec<Point> = Vec::new();
-    while goals.len() < 190 {
-        let p = [1.0 + 58.0 * random.unit(), 1.0 + 58.0 * random.unit()];
-        if goals.iter().all(|&q| distance(p, q) > 2.6) {
-            goals.push(p);
-        }
-    }
-    // Roots all over, so that no tree is the largest.
-    let mut nodes: Vec<(Point, Option<usize>)> = Vec::new();
-    for row in 0..4 {
-        for column in 0..4 {
-            let shift = if row % 2 == 0 { 0.0 } else { 7.0 };
-            let x = 4.0 + 14.5 * f64::from(column) + shift + random.around(2.0);
-            nodes.push(([x.min(58.0), 58.0 - 14.5 * f64::from(row) - random.unit() * 3.0], None));
-        }
-    }
-    for _ in 0..60 {
-        let mut pulls: Vec<Option<Point>> = vec![None; nodes.len()];
-        for &goal in &goals {
-            let near = (0..nodes.len())
-                .min_by(|&a, &b| distance(nodes[a].0, goal).total_cmp(&distance(nodes[b].0, goal)));
-            let near = near.expect("there are roots");
-            let d = distance(nodes[near].0, goal);
-            if d < 11.0 {
-                let pull = pulls[near].get_or_insert([0.0, -0.5]);
-                pull[0] += (goal[0] - nodes[near].0[0]) / d;
-                pull[1] += (goal[1] - nodes[near].0[1]) / d;
-            }
-        }
-        let before = nodes.len();
-        for (i, pull) in pulls.into_iter().enumerate() {
-            let Some([x, y]) = pull else { continue };
-            let length = x.hypot(y);
-            let p = nodes[i].0;
-            let next = [p[0] + STEP * x / length, p[1] + STEP * y / length];
-            let is_free = nodes
-                .iter()
-                .enumerate()
-                .all(|(j, node)| j == i || Some(j) == nodes[i].1 || distance(node.0, next) > STEP * 0.9);
-            if length > 1e-6 && is_free {
-                nodes.push((next, Some(i)));
-            }
-        }
-        goals.retain(|&goal| nodes[before..].iter().all(|node| distance(node.0, goal) > 2.2));
-        if nodes.len() == before {
-            break;
-        }
-    }
-    let mut children = vec![Vec::new(); nodes.len()];
-    for (i, node) in nodes.iter().enumerate() {
-        if let Some(parent) = node.1 {
-            children[parent].push(i);
-        }
-    }
-    // A path from every root and every fork to the next end or fork; the straightest child goes on.
     let mut svg = String::new();
-    let mut starts: Vec<(Option<usize>, usize)> = (0..nodes.len())
-        .filter(|&i| nodes[i].1.is_none() && !children[i].is_empty())
-        .map(|i| (None, i))
-        .collect();
-    while let Some((before, first)) = starts.pop() {
-        let mut path: Vec<usize> = before.into_iter().chain([first]).collect();
-        loop {
-            let last = path[path.len() - 1];
-            let Some(&next) = children[last].first() else { break };
-            starts.extend(children[last][1..].iter().map(|&child| (Some(last), child)));
-            path.push(next);
-        }
-        // Twigs of one step are buds, and no more than a knob.
-        if path.len() > 2 {
-            let points: Vec<Point> = path.iter().map(|&i| nodes[i].0).collect();
-            smooth(&mut svg, &thinned(&points));
+    for row in 0..4 {
+        for column in 0..5 {
+            let shift = if row % 2 == 0 { 0.0 } else { 6.4 };
+            let foot = [
+                5.0 + 12.8 * f64::from(column) + shift + random.around(0.7),
+                14.4 + 14.9 * f64::from(row) + random.around(0.7),
+            ];
+            if foot[0] > 57.0 {
+                continue;
+            }
+            let lean = random.around(0.16);
+            let bend = random.around(0.16);
+            // The stem: its direction turns from lean - bend to lean + bend.
+            let stem = |t: f64| {
+                let angle = lean + bend * (t - 1.0);
+                [foot[0] + 12.6 * t * angle.sin(), (foot[1] - 12.6 * t * angle.cos()).min(SIZE_MM - 0.6)]
+            };
+            smooth(&mut svg, &[0.0, 0.3, 0.65, 1.0].map(stem));
+            let mut side = if random.unit() < 0.5 { 1.0 } else { -1.0 };
+            for t in [0.22, 0.44, 0.68] {
+                let [x, y] = stem(t + random.around(0.03));
+                let length = 6.4 - 2.6 * t + random.around(0.4);
+                let angle = lean + side * 1.25;
+                // A twig curls up.
+                let along = |share: f64| {
+                    let turn = angle - side * 0.45 * share;
+                    [x + length * share * turn.sin(), y - length * share * turn.cos()]
+                };
+                smooth(&mut svg, &[0.0, 0.5, 1.0].map(along));
+                side = -side;
+            }
         }
     }
     svg
-}
-
-/// Every second point, and both ends.
-fn thinned(points: &[Point]) -> Vec<Point> {
-    let last = points.len() - 1;
-    (0..=last).filter(|&i| i == 0 || i == last || (i % 2 == 0 && i + 1 < last)).map(|i| points[i]).collect()
 }
 
 /// Rows of round scales, each on the gaps of the row above.
@@ -237,7 +190,7 @@ fn maze() -> String {
     svg
 }
 
-/// Lines that flow side by side, break off, and here and there run together.
+/// Lines that flow side by side, and break off here and there.
 fn waves() -> String {
     const STEP: f64 = 3.0;
     let mut random = Random(23);
@@ -255,16 +208,9 @@ fn waves() -> String {
                 to = SIZE_MM;
             }
             let count = ((to - x) / STEP).ceil().max(2.0);
-            // A line begins on its neighbour or free, and ends free.
-            let joins = x > 0.0 && random.unit() < 0.6;
             let points: Vec<Point> = (0..=count as u32)
-                .map(|i| {
-                    let at = x + (to - x) * f64::from(i) / count;
-                    let own = height(row, at);
-                    let t = if joins { (f64::from(i) / 3.0).min(1.0) } else { 1.0 };
-                    let eased = t * t * (3.0 - 2.0 * t);
-                    [at, height(row - 1.0, at) * (1.0 - eased) + own * eased]
-                })
+                .map(|i| x + (to - x) * f64::from(i) / count)
+                .map(|at| [at, height(row, at)])
                 .filter(|p| (0.5..=SIZE_MM - 0.5).contains(&p[1]))
                 .collect();
             if points.len() > 2 {
@@ -306,27 +252,49 @@ fn leaves() -> String {
     svg + &blades
 }
 
-/// Rings that are linked with their neighbours, and dots in the gaps.
+/// Rings that bars join to their neighbours, and dots inside.
 fn rings() -> String {
+    const PITCH: f64 = 12.1;
+    const RISE: f64 = 9.9;
     let mut random = Random(15);
-    let mut svg = String::new();
+    let mut rings: Vec<(Point, f64)> = Vec::new();
     let mut dots = String::new();
-    for row in 0..5 {
-        for column in 0..5 {
-            let shift = if row % 2 == 0 { 0.0 } else { 6.5 };
-            let x = 4.0 + 13.0 * f64::from(column) + shift + random.around(0.5);
-            let y = 5.5 + 12.0 * f64::from(row) + random.around(0.5);
-            if x > 57.0 {
-                continue;
+    for row in 0..6 {
+        for column in 0..6 {
+            let shift = if row % 2 == 0 { 0.0 } else { 0.5 * PITCH };
+            let x = 5.8 + PITCH * f64::from(column) + shift + random.around(0.35);
+            let y = 5.2 + RISE * f64::from(row) + random.around(0.35);
+            let radius = 4.3 + random.around(0.2);
+            if x < SIZE_MM - radius - 0.5 {
+                rings.push(([x, y], radius));
+                let (dx, dy) = (random.around(0.25), random.around(0.25));
+                let _ = writeln!(
+                    dots,
+                    "<circle cx=\"{:.3}\" cy=\"{:.3}\" r=\"1.6\" fill=\"#000\" stroke=\"none\"/>",
+                    x + dx,
+                    y + dy
+                );
             }
-            let radius = 6.1 + random.around(0.45);
-            let _ = writeln!(svg, "<circle cx=\"{x:.3}\" cy=\"{y:.3}\" r=\"{radius:.3}\"/>");
-            let _ = writeln!(
-                dots,
-                "<circle cx=\"{:.3}\" cy=\"{:.3}\" r=\"1.9\" fill=\"#000\" stroke=\"none\"/>",
-                x + random.around(0.3),
-                y + random.around(0.3)
-            );
+        }
+    }
+    let mut svg = String::new();
+    for &([x, y], radius) in &rings {
+        let _ = writeln!(svg, "<circle cx=\"{x:.3}\" cy=\"{y:.3}\" r=\"{radius:.3}\"/>");
+    }
+    for (i, &(p, r)) in rings.iter().enumerate() {
+        for &(q, s) in &rings[i + 1..] {
+            let d = distance(p, q);
+            if d < 14.0 {
+                let (ux, uy) = ((q[0] - p[0]) / d, (q[1] - p[1]) / d);
+                let _ = writeln!(
+                    svg,
+                    "<path d=\"M{:.3} {:.3}L{:.3} {:.3}\"/>",
+                    p[0] + r * ux,
+                    p[1] + r * uy,
+                    q[0] - s * ux,
+                    q[1] - s * uy
+                );
+            }
         }
     }
     svg + &dots

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use crate::planar::threads;
 
 /// Items that one thread takes at a time.
-const BATCH: usize = 4;
+const BATCH: usize = 2;
 
 /// `f(0)`, `f(1)` and so on, the same on any number of threads.
 pub fn in_parallel<T: Send>(count: usize, f: impl Fn(usize) -> T + Sync) -> Vec<T> {

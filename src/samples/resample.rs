@@ -179,7 +179,8 @@ mod tests {
 
     #[test]
     fn a_finer_graph_has_the_same_forks_ends_and_rings() {
-        let paths = ["M5 20C15 5 25 35 35 20", "M20 20V38", "M8 30A4 4 0 1 1 16 30A4 4 0 1 1 8 30Z", "M22 3H34V10"];
+        let paths =
+            ["M5 20C15 5 25 35 35 20", "M20 20V38", "M8 30A4 4 0 1 1 16 30A4 4 0 1 1 8 30Z", "M22 3H34V10"];
         let curve = |d: &&str| Curve { path: BezPath::from_svg(d).unwrap(), width_mm: 1.0 };
         let drawing = Drawing { curves: paths.iter().map(curve).collect(), elements: Vec::new() };
         let resolution = Resolution { level: 0, levels: 1, spacing_mm: 6.0 };

@@ -11,6 +11,7 @@ use super::draws::Draws;
 use super::graph::{Edge, Graph, Kind};
 use super::neighbours::Buckets;
 use super::options::Options;
+use super::parallel::in_parallel;
 use super::sampling::curve_sample;
 use super::source::Source;
 
@@ -20,6 +21,10 @@ const PATCH: f64 = 0.5;
 const OVERLAP: f64 = 0.35;
 /// Places of the exemplar that are tried for a patch.
 const TRIES: usize = 160;
+/// And places around the best of these.
+const REFINED: u32 = 60;
+/// All of it is laid so often, and what suits best in sum is taken.
+const STARTS: usize = 8;
 /// Samples nearer to each other than this part of δ are the same in an overlap.
 const SAME: f64 = 0.6;
 
@@ -63,6 +68,23 @@ pub fn patches(
     options: &Options,
     spacing_mm: f64,
 ) -> Started {
+    let all = in_parallel(STARTS, |number| {
+        laid(source, given.clone(), clones, area, options, spacing_mm, number as u64)
+    });
+    let best = all.into_iter().min_by(|a, b| a.1.total_cmp(&b.1));
+    best.expect("there are several starts").0
+}
+
+/// One way to lay them, and how badly they suit one another in all.
+fn laid(
+    source: &Source,
+    given: Graph,
+    clones: &[CloneBox],
+    area: &Area,
+    options: &Options,
+    spacing_mm: f64,
+    number: u64,
+) -> (Started, f64) {
     let origins = vec![None; given.samples.len()];
     let pairs = given.edges.iter().map(|edge| edge.ends).collect();
     let mut patcher = Patcher {
@@ -75,6 +97,7 @@ pub fn patches(
         pairs,
         windows: Vec::new(),
     };
+    let mut unsuited = 0.0;
     for clone in clones {
         patcher.lay(clone.to_mm, clone.from_mm, clone.half_mm);
     }
@@ -99,16 +122,16 @@ pub fn patches(
                 None => area_low.x + half.x + share(column, columns) * (size.x - 2.0 * half.x),
             };
             let middle = DVec2::new(x, area_low.y + half.y + share(row, rows) * (size.y - 2.0 * half.y));
-            let mut draws = Draws::new(options.seed, &[1, row as u64, column as u64]);
-            patcher.lay_best(middle, half, &mut draws);
+            let mut draws = Draws::new(options.seed, &[1, number, row as u64, column as u64]);
+            unsuited += patcher.lay_best(middle, half, &mut draws);
         }
     }
-    patcher.started
+    (patcher.started, unsuited)
 }
 
 impl Patcher<'_> {
-    /// Lays the place of the exemplar that suits best around `middle`.
-    fn lay_best(&mut self, middle: DVec2, half: DVec2, draws: &mut Draws) {
+    /// Lays the place of the exemplar that suits best around `middle`, and says how badly it suits.
+    fn lay_best(&mut self, middle: DVec2, half: DVec2, draws: &mut Draws) -> f64 {
         let (low, high) = self.source.bounds_mm;
         let room = (high - low - 2.0 * half).max(DVec2::ZERO);
         let existing = self.existing(middle, half);
@@ -116,15 +139,25 @@ impl Patcher<'_> {
         let tries = if existing.is_empty() { 1 } else { TRIES };
         let points = &self.points;
         let buckets = Buckets::new(points, self.spacing_mm, None);
-        for _ in 0..tries {
-            let from = low + half + room * DVec2::new(draws.unit(), draws.unit());
+        let mut attempt = |from: DVec2, best: &mut Option<(f64, DVec2)>| {
             let score = self.score(&buckets, &existing, middle, from, half);
             if best.is_none_or(|(least, _)| score < least) {
-                best = Some((score, from));
+                *best = Some((score, from));
             }
+        };
+        for _ in 0..tries {
+            attempt(low + half + room * DVec2::new(draws.unit(), draws.unit()), &mut best);
         }
-        let (_, from) = best.expect("one was tried");
+        // Nearer and nearer around the best.
+        for round in 0..if tries > 1 { REFINED } else { 0 } {
+            let (_, around) = best.expect("one was tried");
+            let reach = room.max_element() * 0.25 * (1.0 - f64::from(round) / f64::from(REFINED));
+            let by = DVec2::new(draws.unit() - 0.5, draws.unit() - 0.5) * 2.0 * reach;
+            attempt((around + by).clamp(low + half, low + half + room), &mut best);
+        }
+        let (unsuited, from) = best.expect("one was tried");
         self.lay(middle, from, half);
+        unsuited
     }
 
     /// What there is in a window: numbers and offsets from its middle.
