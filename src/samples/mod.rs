@@ -12,6 +12,7 @@
 mod area;
 mod assignment;
 mod border;
+mod complete;
 mod drawing;
 mod draws;
 mod edges;
@@ -38,6 +39,7 @@ mod start;
 mod synthesis;
 
 pub use area::Area;
+pub use complete::{Change, ChangeKind, CompleteError, CompleteOptions, Completed, complete};
 pub use drawing::{Curve, Drawing, Element};
 pub use elements::{Class, Elements, Placed, Similarity};
 pub use given::Given;

@@ -241,7 +241,7 @@ fn difference(a: f64, b: f64) -> f64 {
     turn.min(TAU - turn)
 }
 
-fn point(p: DVec2) -> Point {
+pub(super) fn point(p: DVec2) -> Point {
     Point::new(p.x, p.y)
 }
 

@@ -139,7 +139,7 @@ impl Patcher<'_> {
         let tries = if existing.is_empty() { 1 } else { TRIES };
         let points = &self.points;
         let buckets = Buckets::new(points, self.spacing_mm, None);
-        let mut attempt = |from: DVec2, best: &mut Option<(f64, DVec2)>| {
+        let attempt = |from: DVec2, best: &mut Option<(f64, DVec2)>| {
             let score = self.score(&buckets, &existing, middle, from, half);
             if best.is_none_or(|(least, _)| score < least) {
                 *best = Some((score, from));

@@ -1,0 +1,179 @@
+//! Edges that are taken away: between two faces, to open a hole, and where they alone hold a component together, to part it.
+
+use super::ChangeKind;
+use super::lines::Owner;
+use super::links::Planner;
+use super::scene::Scene;
+use super::step::Step;
+use super::work::point_at;
+use crate::planar::Sets;
+
+/// A strand of at most so many spacings is taken away as a whole; a longer one is cut.
+const WHOLE_SPACINGS: f64 = 2.5;
+/// The gap of a cut is at least this many pens, to be seen as one.
+const GAP_PENS: f64 = 0.75;
+/// What a cut leaves has to be as long as this many pens, or it would be a crumb.
+const CRUMB_PENS: f64 = 3.0;
+
+/// Edges one after the other, between samples where there is a choice or an end.
+struct Strand {
+    edges: Vec<usize>,
+    /// The samples in the order of the edges, one more than there are edges.
+    samples: Vec<usize>,
+}
+
+/// Edges of a strand that may be taken away, and the faces to either side.
+struct Cut {
+    edges: Vec<usize>,
+    confidence: f64,
+    faces: [usize; 2],
+}
+
+impl Planner<'_, '_> {
+    /// Up to `needed` steps of which each opens a hole, to the outside or to another, and parts nothing.
+    pub fn openings(&self, needed: usize) -> Vec<Step> {
+        let mut sets = Sets::new(self.scene.region.holes() + 1);
+        let mut steps = Vec::new();
+        for cut in self.cuts() {
+            let [a, b] = cut.faces.map(|face| sets.find(face));
+            if a == b || steps.len() == needed {
+                continue;
+            }
+            let step = Step::remove(ChangeKind::Open, cut.edges, &self.scene.work);
+            if !(self.is_banned)(&step) {
+                sets.join(a, b);
+                steps.push(step);
+            }
+        }
+        steps
+    }
+
+    /// Up to `needed` steps of which each makes two components of one.
+    pub fn partings(&self, needed: usize) -> Vec<Step> {
+        let cuts = self.cuts().into_iter().filter(|cut| cut.faces[0] == cut.faces[1]);
+        let steps = cuts.map(|cut| Step::remove(ChangeKind::Part, cut.edges, &self.scene.work));
+        steps.filter(|step| !(self.is_banned)(step)).take(needed).collect()
+    }
+
+    /// One cut for each strand that has a face on either side, those of least confidence first.
+    fn cuts(&self) -> Vec<Cut> {
+        let mut cuts: Vec<Cut> = strands(self.scene).iter().filter_map(|strand| self.cut(strand)).collect();
+        // Where nothing is known of them, in an order that does not begin in one corner.
+        let scattered = |cut: &Cut| (cut.edges[0] as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        cuts.sort_by(|a, b| a.confidence.total_cmp(&b.confidence).then(scattered(a).cmp(&scattered(b))));
+        cuts
+    }
+
+    fn cut(&self, strand: &Strand) -> Option<Cut> {
+        let (scene, work) = (self.scene, &self.scene.work);
+        if strand.edges.iter().any(|&edge| work.is_given(edge)) {
+            return None;
+        }
+        let faces = strand.edges.iter().find_map(|&edge| faces(scene, edge))?;
+        let length = |range: std::ops::Range<usize>| {
+            strand.edges[range].iter().map(|&edge| work.length_mm(edge)).sum::<f64>()
+        };
+        let count = strand.edges.len();
+        let is_held =
+            [strand.samples[0], strand.samples[count]].map(|sample| scene.by_sample[sample].len() > 1);
+        let is_loop = strand.samples[0] == strand.samples[count];
+        let gap_mm = (GAP_PENS * work.pen_mm).max(work.completing.min_gap_mm) + work.pen_mm;
+        let parts = faces[0] == faces[1];
+        let is_whole =
+            is_held == [true; 2] && !is_loop && length(0..count) < WHOLE_SPACINGS * scene.spacing_mm();
+        let range = if is_whole { 0..count } else { self.gap(strand, gap_mm)? };
+        // What is left at an end in the open would be parted too, and no crumb may be left.
+        let crumb_mm = CRUMB_PENS * work.pen_mm;
+        let remains = [length(0..range.start), length(range.end..count)];
+        let is_crumb = (0..2).any(|side| !is_held[side] && remains[side] < crumb_mm);
+        if (parts || !is_loop) && is_crumb && !(is_loop && !parts) {
+            return None;
+        }
+        let edges = strand.edges[range].to_vec();
+        if !self.is_bold && edges.iter().any(|&edge| self.is_touched(edge, strand)) {
+            return None;
+        }
+        let confidence = edges.iter().map(|&edge| work.edges[edge].confidence).fold(f64::INFINITY, f64::min);
+        Some(Cut { edges, confidence, faces })
+    }
+
+    /// The range of edges around the least confident one that leaves a gap as wide as that, or all.
+    fn gap(&self, strand: &Strand, gap_mm: f64) -> Option<std::ops::Range<usize>> {
+        let work = &self.scene.work;
+        let confidence = |i: &usize| work.edges[strand.edges[*i]].confidence;
+        let middle = strand.edges.len() as f64 / 2.0;
+        let off_middle = |i: &usize| (*i as f64 + 0.5 - middle).abs();
+        let least = (0..strand.edges.len()).min_by(|a, b| {
+            confidence(a).total_cmp(&confidence(b)).then(off_middle(a).total_cmp(&off_middle(b)))
+        })?;
+        let mut range = least..least + 1;
+        let at = |i: usize| work.samples[strand.samples[i]].at;
+        while work.area.way(at(range.start), at(range.end)).length() < gap_mm {
+            match (range.start > 0, range.end < strand.edges.len()) {
+                (true, true) if (range.end - range.start) % 2 == 0 => range.start -= 1,
+                (_, true) => range.end += 1,
+                (true, false) => range.start -= 1,
+                (false, false) => break,
+            }
+        }
+        Some(range)
+    }
+
+    /// Whether ink lies at an edge that is not of its own path: it would be left in the gap, or hangs on to it.
+    fn is_touched(&self, edge: usize, strand: &Strand) -> bool {
+        let (scene, work) = (self.scene, &self.scene.work);
+        let own =
+            strand.samples.iter().flat_map(|&sample| scene.own(super::work::Foot::Sample(sample), None));
+        let mut own: Vec<Owner> = own.collect();
+        own.extend(strand.edges.iter().map(|&edge| Owner::Edge(edge)));
+        let cubic = work.cubic(edge);
+        [0.2, 0.4, 0.6, 0.8].into_iter().any(|t| {
+            let near = scene.lines.near(point_at(&cubic, t), work.width_mm(edge) / 2.0);
+            near.iter().any(|(_, line)| !own.contains(&line.owner))
+        })
+    }
+}
+
+/// The faces to the left and to the right of an edge, where both sides of it lie open at one place.
+fn faces(scene: &Scene, edge: usize) -> Option<[usize; 2]> {
+    let work = &scene.work;
+    let cubic = work.cubic(edge);
+    let off_mm = work.width_mm(edge) / 2.0 + 2.0 * work.completing.chord_mm;
+    [0.5, 0.3, 0.7].into_iter().find_map(|t| {
+        let along = point_at(&cubic, t + 0.05) - point_at(&cubic, t - 0.05);
+        let across = along.perp().normalize_or_zero() * off_mm;
+        let face = |p| scene.places.face(work.place(p));
+        Some([face(point_at(&cubic, t) + across)?, face(point_at(&cubic, t) - across)?])
+    })
+}
+
+/// All edges as strands.
+fn strands(scene: &Scene) -> Vec<Strand> {
+    let work = &scene.work;
+    let is_inner = |sample: usize| scene.by_sample[sample].len() == 2;
+    let mut is_used = vec![false; work.edges.len()];
+    let mut strands = Vec::new();
+    let outer = |edge: usize| work.edges[edge].ends.into_iter().find(|&end| !is_inner(end));
+    let begins = work.present().filter_map(|edge| Some((edge, outer(edge)?)));
+    let loops = work.present().map(|edge| (edge, work.edges[edge].ends[0]));
+    for (edge, begin) in begins.chain(loops) {
+        if is_used[edge] {
+            continue;
+        }
+        let mut strand = Strand { edges: Vec::new(), samples: vec![begin] };
+        let (mut at, mut edge) = (begin, edge);
+        loop {
+            is_used[edge] = true;
+            strand.edges.push(edge);
+            let [a, b] = work.edges[edge].ends;
+            at = if at == a { b } else { a };
+            strand.samples.push(at);
+            match scene.by_sample[at].iter().find(|&&next| is_inner(at) && !is_used[next]) {
+                Some(&next) => edge = next,
+                None => break,
+            }
+        }
+        strands.push(strand);
+    }
+    strands
+}

@@ -1,0 +1,292 @@
+//! Strokes that are added: between components, to make them one, and within one, to enclose a hole.
+
+use std::collections::BTreeMap;
+
+use glam::DVec2;
+
+use super::ChangeKind;
+use super::lines::{Line, Lines, Owner, Run};
+use super::scene::Scene;
+use super::step::{Link, Port, Step};
+use super::work::{Foot, point_at};
+use crate::planar::Sets;
+use crate::samples::Kind;
+
+/// A component of less ink than this many squares of the pen may be taken away where that is less than joining it.
+const SMALL_PENS: f64 = 8.0;
+/// Candidates for each pair of components, as the cheapest may be in the way of something.
+const PER_PAIR: usize = 6;
+/// A link that ends at an edge ends at its sample if that is nearer than this many pens.
+const SNAP_PENS: f64 = 1.5;
+/// How often the reach is doubled, from three spacings on.
+const DOUBLINGS: u32 = 8;
+
+/// What may be added, and what is banned from being tried again.
+pub(super) struct Planner<'s, 'a> {
+    pub scene: &'s Scene<'a>,
+    /// Whether strokes that would touch other ink are tried as well: how the counts then change is seen when it is done.
+    pub is_bold: bool,
+    /// Is told a step that is thought of.
+    pub is_banned: &'s dyn Fn(&Step) -> bool,
+}
+
+impl Planner<'_, '_> {
+    /// Up to `needed` steps of which each makes one component of two.
+    pub fn joins(&self, needed: usize) -> Vec<Step> {
+        let scene = self.scene;
+        let mut lines = Lines::new(&scene.work);
+        let mut sets = Sets::new(scene.region.components());
+        let mut steps = Vec::new();
+        for edge in &scene.work.unrealised {
+            if steps.len() == needed {
+                return steps;
+            }
+            let Some([p, q]) = self.both_parts(edge.ends) else { continue };
+            if sets.find(p) == sets.find(q) {
+                continue;
+            }
+            let (ports, cubic) = (edge.ends.map(|end| scene.port(end)), scene.work.cubic_of(edge));
+            let [from, to] = ports;
+            let link = if edge.handles.contains(&DVec2::ZERO) {
+                Link::smooth(scene, &from, &to)
+            } else {
+                Link { from, to, cubic }
+            };
+            let step = Step::add(ChangeKind::Join, &link, Some(edge.confidence));
+            if self.is_possible(&link, &step, &lines, false) {
+                lines.add(&link.cubic, scene.work.pen_mm / 2.0, usize::MAX);
+                sets.join(p, q);
+                steps.push(step);
+            }
+        }
+        let mut reach_mm = 3.0 * scene.spacing_mm();
+        for _ in 0..=DOUBLINGS {
+            for ([p, q], link) in self.between_parts(reach_mm, &mut sets) {
+                if steps.len() == needed {
+                    return steps;
+                }
+                if sets.find(p) == sets.find(q) {
+                    continue;
+                }
+                if let Some(step) = [p, q].iter().find_map(|&part| self.leaving_out(part, &link)) {
+                    sets.join(p, q);
+                    steps.push(step);
+                    continue;
+                }
+                for link in [link.clone(), link.straightened()] {
+                    let step = Step::add(ChangeKind::Bridge, &link, None);
+                    if self.is_possible(&link, &step, &lines, false) {
+                        lines.add(&link.cubic, scene.work.pen_mm / 2.0, usize::MAX);
+                        sets.join(p, q);
+                        steps.push(step);
+                        break;
+                    }
+                }
+            }
+            reach_mm *= 2.0;
+        }
+        steps
+    }
+
+    /// Up to `needed` steps of which each closes a hole within a component.
+    pub fn closings(&self, needed: usize) -> Vec<Step> {
+        let scene = self.scene;
+        let mut lines = Lines::new(&scene.work);
+        let mut steps: Vec<Step> = Vec::new();
+        let voted = scene.work.unrealised.iter().filter_map(|edge| {
+            let [p, q] = self.both_parts(edge.ends)?;
+            let [from, to] = edge.ends.map(|end| scene.port(end));
+            let link = Link::smooth(scene, &from, &to);
+            (p == q).then_some((ChangeKind::Enclose, link, Some(edge.confidence)))
+        });
+        let mut candidates: Vec<_> = voted.collect();
+        for doubling in 0..4 {
+            let reach_mm = scene.spacing_mm() * f64::from(3 << doubling);
+            candidates.extend(
+                self.within_parts(reach_mm).into_iter().map(|link| (ChangeKind::Enclose, link, None)),
+            );
+            for (kind, link, confidence) in candidates.drain(..) {
+                if steps.len() == needed {
+                    return steps;
+                }
+                let step = Step::add(kind, &link, confidence);
+                if self.is_possible(&link, &step, &lines, true) {
+                    lines.add(&link.cubic, scene.work.pen_mm / 2.0, usize::MAX);
+                    steps.push(step);
+                }
+            }
+        }
+        steps
+    }
+
+    fn both_parts(&self, ends: [usize; 2]) -> Option<[usize; 2]> {
+        let [p, q] = ends.map(|end| self.scene.part_of_sample(end));
+        Some([p?, q?])
+    }
+
+    /// Whether a link stays in the area, clear of other ink, and was not tried in vain.
+    fn is_possible(&self, link: &Link, step: &Step, lines: &Lines, is_within: bool) -> bool {
+        if (self.is_banned)(step) || !link.is_inside(self.scene) {
+            return false;
+        }
+        let mut own = self.scene.own(link.from.foot, link.from.owner);
+        own.extend(self.scene.own(link.to.foot, link.to.owner));
+        let run = lines.run(&link.cubic, self.scene.work.pen_mm / 2.0, self.scene.margin_mm(), |owner| {
+            own.contains(&owner)
+        });
+        match run {
+            Run::Clear => true,
+            Run::Short => !is_within,
+            Run::Blocked => self.is_bold && !is_within,
+        }
+    }
+
+    /// Instead of a link, a step that takes a small component away, if that is less than the link.
+    fn leaving_out(&self, part: usize, link: &Link) -> Option<Step> {
+        let work = &self.scene.work;
+        if !work.completing.leaves_out_small {
+            return None;
+        }
+        let pen_mm = work.pen_mm;
+        let found = &self.scene.region.parts()[part];
+        let area_mm2 = found.exterior().area_mm2(self.scene.region.grid());
+        if area_mm2 > SMALL_PENS * pen_mm * pen_mm || !found.holes().is_empty() || self.scene.has_solid(part)
+        {
+            return None;
+        }
+        let edges: Vec<usize> =
+            work.present().filter(|&edge| self.scene.part(Owner::Edge(edge)) == Some(part)).collect();
+        let length: f64 = edges.iter().map(|&edge| work.length_mm(edge)).sum();
+        let [a, .., b] = link.cubic;
+        if edges.is_empty() || edges.iter().any(|&edge| work.is_given(edge)) || length > a.distance(b) {
+            return None;
+        }
+        let step = Step::remove(ChangeKind::LeaveOut, edges, work);
+        (!(self.is_banned)(&step)).then_some(step)
+    }
+
+    /// Links between parts that are not in one set yet, the cheapest first.
+    fn between_parts(&self, reach_mm: f64, sets: &mut Sets) -> Vec<([usize; 2], Link)> {
+        let mut found: BTreeMap<[usize; 2], Vec<(f64, Link)>> = BTreeMap::new();
+        let largest = self.largest_set(sets);
+        for (part, port) in self.ports() {
+            if sets.find(part) == largest && port.onward.is_none() {
+                // Links to the largest are found from the others.
+                continue;
+            }
+            let mut seen: Vec<usize> = Vec::new();
+            for (_, line) in self.scene.lines.near(port.at, reach_mm) {
+                let Some(other) = self.scene.part(line.owner) else { continue };
+                if sets.find(other) == sets.find(part) || seen.contains(&other) {
+                    continue;
+                }
+                seen.push(other);
+                let link = Link::smooth(self.scene, &port, &self.landing(line, port.at));
+                found.entry([part.min(other), part.max(other)]).or_default().push((link.cost(), link));
+            }
+        }
+        let mut links: Vec<(f64, [usize; 2], Link)> = Vec::new();
+        for (pair, mut candidates) in found {
+            candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
+            candidates.truncate(PER_PAIR);
+            links.extend(candidates.into_iter().map(|(cost, link)| (cost, pair, link)));
+        }
+        links.sort_by(|a, b| a.0.total_cmp(&b.0));
+        links.into_iter().map(|(_, pair, link)| (pair, link)).collect()
+    }
+
+    /// Links that would enclose a hole, the cheapest first.
+    fn within_parts(&self, reach_mm: f64) -> Vec<Link> {
+        let mut links: Vec<(f64, Link)> = Vec::new();
+        for (part, port) in self.ports() {
+            let own = self.scene.own(port.foot, port.owner);
+            let near = self.scene.lines.near(port.at, reach_mm);
+            let others = near
+                .into_iter()
+                .filter(|(_, line)| self.scene.part(line.owner) == Some(part) && !own.contains(&line.owner));
+            let ahead = others.filter(|(_, line)| {
+                let way = line.nearest(port.at).0 - port.at;
+                port.onward.is_none_or(|onward| onward.dot(way) > 0.0)
+            });
+            if let Some((_, line)) = ahead.into_iter().next() {
+                let link = Link::smooth(self.scene, &port, &self.landing(line, port.at));
+                links.push((link.cost(), link));
+            }
+        }
+        links.sort_by(|a, b| a.0.total_cmp(&b.0));
+        links.into_iter().map(|(_, link)| link).collect()
+    }
+
+    /// The set of parts that has the most edges.
+    fn largest_set(&self, sets: &mut Sets) -> usize {
+        let mut counts = vec![0; self.scene.region.components()];
+        for edge in self.scene.work.present() {
+            if let Some(part) = self.scene.part(Owner::Edge(edge)) {
+                counts[sets.find(part)] += 1;
+            }
+        }
+        (1..counts.len()).fold(0, |best, i| if counts[i] > counts[best] { i } else { best })
+    }
+
+    /// All places from which links may go, with their parts: samples, middles of edges, and points of outlines of elements.
+    fn ports(&self) -> Vec<(usize, Port)> {
+        let (scene, work) = (self.scene, &self.scene.work);
+        let samples = (0..work.samples.len()).filter(|&i| work.samples[i].kind == Kind::Curve);
+        let mut ports: Vec<(usize, Port)> =
+            samples.filter_map(|sample| Some((scene.part_of_sample(sample)?, scene.port(sample)))).collect();
+        for edge in work.present().filter(|&edge| work.length_mm(edge) > 4.0 * work.pen_mm) {
+            let Some(part) = scene.part(Owner::Edge(edge)) else { continue };
+            let at = point_at(&work.cubic(edge), 0.5);
+            ports.push((part, Port { foot: Foot::Edge(edge, 0.5), at, owner: None, onward: None }));
+        }
+        for (number, contour) in work.elements.iter().flat_map(|element| &element.contours).enumerate() {
+            let owner = Owner::Contour(number);
+            let Some(part) = scene.part(owner) else { continue };
+            let stride = contour.len().div_ceil(32);
+            for i in (0..contour.len()).step_by(stride) {
+                let next = contour[(i + 1) % contour.len()];
+                let at = contour[i] + self.inward(next - contour[i]);
+                ports.push((part, Port { foot: Foot::Ink(at), at, owner: Some(owner), onward: None }));
+            }
+        }
+        ports
+    }
+
+    /// From an outline into the ink on its left, so that a round end there holds.
+    fn inward(&self, along: DVec2) -> DVec2 {
+        along.perp().normalize_or_zero() * self.scene.work.pen_mm / 4.0
+    }
+
+    /// The place of a line that is nearest to `p`.
+    fn landing(&self, line: &Line, p: DVec2) -> Port {
+        let work = &self.scene.work;
+        let (at, t) = line.nearest(p);
+        let inked = |at: DVec2| Port { foot: Foot::Ink(at), at, owner: Some(line.owner), onward: None };
+        match line.owner {
+            Owner::Edge(edge) => {
+                let ends = work.edges[edge].ends;
+                let off = |end: usize| work.area.way(at, work.samples[end].at).length();
+                let near = if off(ends[0]) <= off(ends[1]) { ends[0] } else { ends[1] };
+                if off(near) < SNAP_PENS * work.pen_mm {
+                    return self.scene.port(near);
+                }
+                // Not so near to an end that a part of no length would be left.
+                let foot = Foot::Edge(edge, t.clamp(0.01, 0.99));
+                Port { foot, at: point_at(&work.cubic(edge), t.clamp(0.01, 0.99)), owner: None, onward: None }
+            }
+            Owner::Contour(_) => inked(at + self.inward(line.to - line.from)),
+            Owner::Frame(_) => inked(at),
+        }
+    }
+}
+
+impl Scene<'_> {
+    /// Whether a part has ink of elements or of the frame.
+    pub fn has_solid(&self, part: usize) -> bool {
+        let contours = self.work.elements.iter().map(|element| element.contours.len()).sum::<usize>();
+        (0..contours)
+            .map(Owner::Contour)
+            .chain((0..self.work.frame.len()).map(Owner::Frame))
+            .any(|owner| self.part(owner) == Some(part))
+    }
+}

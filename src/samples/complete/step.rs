@@ -1,0 +1,143 @@
+//! One change of a pattern, planned and carried out.
+
+use glam::DVec2;
+
+use super::lines::Owner;
+use super::scene::Scene;
+use super::work::{Foot, Work};
+use super::{Change, ChangeKind};
+
+/// What is done to the graph.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Act {
+    /// An edge between two feet, with the handles of its curve.
+    Add { feet: [Foot; 2], handles: [DVec2; 2] },
+    /// Edges taken away.
+    Remove(Vec<usize>),
+}
+
+/// A change, and how to make it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Step {
+    pub change: Change,
+    pub act: Act,
+}
+
+impl Step {
+    /// A step that adds a stroke along `link`.
+    pub fn add(kind: ChangeKind, link: &Link, confidence: Option<f64>) -> Self {
+        let [a, p, q, b] = link.cubic;
+        let change = Change { kind, from_mm: a, to_mm: b, confidence };
+        Self { change, act: Act::Add { feet: [link.from.foot, link.to.foot], handles: [p - a, q - b] } }
+    }
+
+    /// A step that takes edges away, from one end of them to the other.
+    pub fn remove(kind: ChangeKind, edges: Vec<usize>, work: &Work) -> Self {
+        let ends = edges.iter().flat_map(|&edge| work.edges[edge].ends);
+        let mut outer: Vec<usize> = Vec::new();
+        for end in ends {
+            match outer.iter().position(|&known| known == end) {
+                Some(known) => drop(outer.swap_remove(known)),
+                None => outer.push(end),
+            }
+        }
+        let at = |i: usize| {
+            outer.get(i).map_or(work.samples[work.edges[edges[0]].ends[i % 2]].at, |&s| work.samples[s].at)
+        };
+        let confidence = edges.iter().map(|&edge| work.edges[edge].confidence).fold(f64::INFINITY, f64::min);
+        let (from_mm, to_mm) = (at(0), at(outer.len().max(2) - 1));
+        Self {
+            change: Change { kind, from_mm, to_mm, confidence: Some(confidence) },
+            act: Act::Remove(edges),
+        }
+    }
+
+    /// Makes the change; whether there was anything to do.
+    pub fn carry_out(&self, work: &mut Work) -> bool {
+        match &self.act {
+            Act::Add { feet, handles } => {
+                let [from, to] = feet.map(|foot| work.sample_at(foot));
+                let confidence = self.change.confidence.unwrap_or(0.0);
+                work.add(from, to, *handles, confidence).is_some()
+            }
+            Act::Remove(edges) => {
+                edges.iter().for_each(|&edge| work.remove(edge));
+                true
+            }
+        }
+    }
+}
+
+/// A place at the ink from which a stroke may go.
+#[derive(Debug, Clone)]
+pub(super) struct Port {
+    pub foot: Foot,
+    pub at: DVec2,
+    /// Whose ink it is, where it is no sample's.
+    pub owner: Option<Owner>,
+    /// The direction in which a path goes on that ends there in the open.
+    pub onward: Option<DVec2>,
+}
+
+/// A stroke that may be added.
+#[derive(Debug, Clone)]
+pub(super) struct Link {
+    pub from: Port,
+    pub to: Port,
+    pub cubic: [DVec2; 4],
+}
+
+/// A path goes on smoothly into a stroke that turns from it by less than this: the cosine of 60 degrees.
+const SMOOTH: f64 = 0.5;
+
+impl Link {
+    /// A stroke that continues the paths that end at its feet, if it need not turn too much.
+    pub fn smooth(scene: &Scene, from: &Port, to: &Port) -> Self {
+        let way = scene.work.area.way(from.at, to.at);
+        let length = way.length();
+        let third = |onward: Option<DVec2>, way: DVec2| {
+            let smooth = onward.filter(|onward| onward.dot(way) > SMOOTH * length);
+            smooth.map_or(way / 3.0, |onward| onward * length / 3.0)
+        };
+        let end = from.at + way;
+        let cubic = [from.at, from.at + third(from.onward, way), end + third(to.onward, -way), end];
+        Self { from: from.clone(), to: to.clone(), cubic }
+    }
+
+    /// The same as a straight stroke.
+    pub fn straightened(mut self) -> Self {
+        let [a, _, _, b] = self.cubic;
+        self.cubic = [a, a.lerp(b, 1.0 / 3.0), a.lerp(b, 2.0 / 3.0), b];
+        self
+    }
+
+    /// Its length, counted more where it is not how a maker would go on: from and to ends in the open, straight ahead.
+    pub fn cost(&self) -> f64 {
+        let [a, _, _, b] = self.cubic;
+        let factor = |port: &Port, way: DVec2| match port.onward {
+            Some(onward) => 1.0 + 0.75 * (1.0 - onward.dot(way.normalize_or_zero())),
+            None => 1.5,
+        };
+        a.distance(b) * factor(&self.from, b - a) * factor(&self.to, a - b)
+    }
+
+    /// Whether its middle line stays in the area.
+    pub fn is_inside(&self, scene: &Scene) -> bool {
+        let [a, .., b] = self.cubic;
+        let step_mm = scene.work.pen_mm.max(a.distance(b) / 100.0);
+        let steps = (a.distance(b) / step_mm).ceil().max(2.0) as u32;
+        // The feet are ink already.
+        (1..steps).all(|i| {
+            let p = super::work::point_at(&self.cubic, f64::from(i) / f64::from(steps));
+            scene.work.area.contains(p)
+        })
+    }
+}
+
+impl Scene<'_> {
+    /// The port at a sample of a curve.
+    pub fn port(&self, sample: usize) -> Port {
+        let onward = self.free_end(sample).map(|edge| self.work.onward(sample, edge));
+        Port { foot: Foot::Sample(sample), at: self.work.samples[sample].at, owner: None, onward }
+    }
+}

@@ -1,0 +1,150 @@
+//! What a maker would do before counting anything: ends that almost meet are joined, and stray twigs go.
+
+use super::ChangeKind;
+use super::lines::{Lines, Run};
+use super::scene::Scene;
+use super::step::{Link, Port, Step};
+
+/// Ends meet when each points at the other within this: the cosine of 45 degrees.
+const POINTING: f64 = std::f64::consts::FRAC_1_SQRT_2;
+/// A twig is shorter than so many pens.
+const TWIG_PENS: f64 = 1.2;
+
+/// What is done to a scene before its components and holes are counted. Ends are joined and twigs taken away until there are only
+/// `ends_wanted` ends in the open, as in the exemplar.
+pub(super) fn tidied(scene: &Scene) -> Vec<Step> {
+    let completing = scene.work.completing;
+    let mut tidy = Tidy {
+        scene,
+        lines: Lines::new(&scene.work),
+        open: scene.free_ends().into_iter().map(|(sample, _)| sample).collect(),
+        steps: Vec::new(),
+    };
+    if completing.frame_mm.is_some() {
+        tidy.join_frame();
+    }
+    if completing.joins_ends {
+        tidy.join_voted();
+        tidy.join_pointing();
+    }
+    if completing.removes_twigs {
+        tidy.remove_twigs();
+    }
+    tidy.steps
+}
+
+struct Tidy<'s, 'a> {
+    scene: &'s Scene<'a>,
+    /// With what has been added.
+    lines: Lines,
+    /// Samples at which paths end in the open.
+    open: Vec<usize>,
+    steps: Vec<Step>,
+}
+
+impl Tidy<'_, '_> {
+    fn is_enough(&self) -> bool {
+        self.open.len() <= self.scene.work.completing.ends_wanted.unwrap_or(0)
+    }
+
+    /// Adds a link if it runs clear, and closes its ends.
+    fn link(&mut self, kind: ChangeKind, link: Link, confidence: Option<f64>, ends: &[usize]) {
+        let (scene, pen_mm) = (self.scene, self.scene.work.pen_mm);
+        let mut own = scene.own(link.from.foot, link.from.owner);
+        own.extend(scene.own(link.to.foot, link.to.owner));
+        for link in [link.clone(), link.straightened()] {
+            let run =
+                self.lines.run(&link.cubic, pen_mm / 2.0, scene.margin_mm(), |owner| own.contains(&owner));
+            if run != Run::Blocked && link.is_inside(scene) {
+                self.lines.add(&link.cubic, pen_mm / 2.0, usize::MAX);
+                self.open.retain(|end| !ends.contains(end));
+                self.steps.push(Step::add(kind, &link, confidence));
+                return;
+            }
+        }
+    }
+
+    /// Ends near the frame go on to it.
+    fn join_frame(&mut self) {
+        let (scene, work) = (self.scene, &self.scene.work);
+        for end in self.open.clone() {
+            let from = scene.port(end);
+            let at = work.area.nearest(from.at);
+            if at.distance(from.at) < scene.spacing_mm() {
+                let near = self.lines.near(at, 0.0);
+                let Some(owner) = near
+                    .iter()
+                    .map(|(_, line)| line.owner)
+                    .find(|owner| matches!(owner, super::lines::Owner::Frame(_)))
+                else {
+                    continue;
+                };
+                let to = Port { foot: super::work::Foot::Ink(at), at, owner: Some(owner), onward: None };
+                self.link(ChangeKind::Join, Link::smooth(scene, &from, &to), None, &[end]);
+            }
+        }
+    }
+
+    /// Edges that were voted for and would close an end.
+    fn join_voted(&mut self) {
+        let scene = self.scene;
+        for edge in &scene.work.unrealised {
+            if edge.confidence < scene.work.completing.least_confidence || self.is_enough() {
+                return;
+            }
+            if edge.ends.iter().any(|end| self.open.contains(end)) {
+                let [from, to] = edge.ends.map(|end| scene.port(end));
+                let has_other = edge.ends.iter().all(|&end| !scene.by_sample[end].is_empty());
+                if has_other {
+                    self.link(
+                        ChangeKind::Join,
+                        Link::smooth(scene, &from, &to),
+                        Some(edge.confidence),
+                        &edge.ends,
+                    );
+                }
+            }
+        }
+    }
+
+    /// Pairs of ends that point at each other and are near, the nearest first.
+    fn join_pointing(&mut self) {
+        let scene = self.scene;
+        let reach_mm = scene.work.completing.reach_mm.unwrap_or(0.6 * scene.spacing_mm());
+        let mut pairs = Vec::new();
+        for (i, &a) in self.open.iter().enumerate() {
+            for &b in &self.open[..i] {
+                let (from, to) = (scene.port(a), scene.port(b));
+                let way = scene.work.area.way(from.at, to.at);
+                let points = |port: &Port, way: glam::DVec2| {
+                    port.onward.is_some_and(|onward| onward.dot(way) > POINTING * way.length())
+                };
+                if way.length() < reach_mm && points(&from, way) && points(&to, -way) {
+                    pairs.push((way.length(), [b, a], Link::smooth(scene, &to, &from)));
+                }
+            }
+        }
+        pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (_, ends, link) in pairs {
+            if !self.is_enough() && ends.iter().all(|end| self.open.contains(end)) {
+                self.link(ChangeKind::Join, link, None, &ends);
+            }
+        }
+    }
+
+    /// Twigs: short edges from where other paths pass to an end in the open.
+    fn remove_twigs(&mut self) {
+        let (scene, work) = (self.scene, &self.scene.work);
+        for end in self.open.clone() {
+            let [edge] = scene.by_sample[end][..] else { continue };
+            let [a, b] = work.edges[edge].ends;
+            let foot = if end == a { b } else { a };
+            let is_twig =
+                work.length_mm(edge) < TWIG_PENS * work.width_mm(edge) && scene.by_sample[foot].len() > 2;
+            if is_twig && !work.is_given(edge) && !self.is_enough() {
+                self.open.retain(|&open| open != end);
+                self.steps.push(Step::remove(ChangeKind::Trim, vec![edge], work));
+            }
+        }
+    }
+}
