@@ -87,6 +87,7 @@ impl Bounds {
 }
 
 /// All edges of a region, by where they are.
+#[derive(Clone)]
 pub struct EdgeIndex {
     /// In the order of the curve.
     edges: Vec<IndexedEdge>,

@@ -4,7 +4,11 @@ use glam::DVec2;
 
 use crate::planar::{EdgeIndex, Region};
 
+/// Corners of an area that is grown are round within this part of what it grows by.
+const GROWN_CHORD: f64 = 0.05;
+
 /// The output domain D (Tu 2020 §4.3.1).
+#[derive(Clone)]
 pub struct Area {
     region: Region,
     index: EdgeIndex,
@@ -20,6 +24,12 @@ impl Area {
     /// The same, where x and x + `lap_mm` are one place. The region has to reach over one lap, from x = 0, and one half more on both sides.
     pub fn rolled(region: Region, lap_mm: f64) -> Self {
         Self { lap_mm: Some(lap_mm), ..Self::new(region) }
+    }
+
+    /// The same with so much more all around.
+    pub fn grown(&self, by_mm: f64) -> Self {
+        let region = self.region.offset(by_mm, GROWN_CHORD * by_mm);
+        Self { lap_mm: self.lap_mm, ..Self::new(region) }
     }
 
     /// The region.
@@ -73,5 +83,45 @@ impl Area {
             Some(lap_mm) => DVec2::new(p.x.rem_euclid(lap_mm), p.y),
             None => p,
         }
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::planar::{FillRule, Grid};
+
+    fn rectangle(low: DVec2, high: DVec2) -> Region {
+        let grid = Grid::for_extent(1000.0).unwrap();
+        let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
+        let path = corners.iter().map(|&p| grid.snap(p).unwrap()).collect();
+        Region::fill(grid, &[path], FillRule::NonZero)
+    }
+
+    pub(in crate::samples) fn square(side_mm: f64) -> Area {
+        Area::new(rectangle(DVec2::ZERO, DVec2::splat(side_mm)))
+    }
+
+    pub(in crate::samples) fn rolled(lap_mm: f64, height_mm: f64) -> Area {
+        let low = DVec2::new(-0.5 * lap_mm, 0.0);
+        Area::rolled(rectangle(low, DVec2::new(1.5 * lap_mm, height_mm)), lap_mm)
+    }
+
+    #[test]
+    fn the_short_way_leads_over_the_seam() {
+        let area = rolled(100.0, 20.0);
+        let way = area.way(DVec2::new(95.0, 3.0), DVec2::new(5.0, 4.0));
+        assert_eq!(way, DVec2::new(10.0, 1.0));
+        assert_eq!(area.home(DVec2::new(-5.0, 3.0)), DVec2::new(95.0, 3.0));
+        assert!(area.contains(DVec2::new(205.0, 3.0)) && !area.contains(DVec2::new(205.0, 30.0)));
+        assert_eq!(square(10.0).way(DVec2::ZERO, DVec2::new(9.0, 0.0)), DVec2::new(9.0, 0.0));
+    }
+
+    #[test]
+    fn what_is_outside_is_drawn_to_the_border() {
+        let area = square(10.0);
+        assert_eq!(area.nearest(DVec2::new(12.0, 4.0)), DVec2::new(10.0, 4.0));
+        assert_eq!(area.depth_mm(DVec2::new(4.0, 3.0)), 3.0);
+        assert!(area.grown(5.0).contains(DVec2::new(-4.0, 5.0)));
     }
 }

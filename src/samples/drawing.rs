@@ -1,7 +1,7 @@
 //! A pattern as it is drawn: curves with a pen, and filled elements.
 
 use glam::DVec2;
-use kurbo::BezPath;
+use kurbo::{BezPath, Shape};
 
 /// One stroke: a path of a single subpath in millimetres, y up, closed if it ends with a closing element.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,4 +27,19 @@ pub struct Drawing {
     pub curves: Vec<Curve>,
     /// The filled shapes.
     pub elements: Vec<Element>,
+}
+
+impl Drawing {
+    /// Lower left and upper right corner of the lines of curves and of the ink of elements, in millimetres; `None` if there is nothing.
+    pub fn bounds_mm(&self) -> Option<(DVec2, DVec2)> {
+        let of_curve = |curve: &Curve| {
+            let bounds = curve.path.bounding_box();
+            [DVec2::new(bounds.x0, bounds.y0), DVec2::new(bounds.x1, bounds.y1)]
+        };
+        let curves = self.curves.iter().flat_map(of_curve);
+        let elements = self.elements.iter().flat_map(|element| element.contours.iter().flatten().copied());
+        let mut points = curves.chain(elements);
+        let first = points.next()?;
+        Some(points.fold((first, first), |(low, high), p| (low.min(p), high.max(p))))
+    }
 }

@@ -90,6 +90,26 @@ impl Graph {
     }
 }
 
+impl Graph {
+    /// Keeps those samples for which `stays` is true, and the edges between them.
+    pub fn keep(&mut self, stays: &[bool]) {
+        let mut number_of = vec![usize::MAX; stays.len()];
+        let mut next = 0;
+        for (number, _) in number_of.iter_mut().zip(stays).filter(|(_, stays)| **stays) {
+            *number = next;
+            next += 1;
+        }
+        let mut kept = stays.iter();
+        self.samples.retain(|_| *kept.next().expect("one for each sample"));
+        for edges in [&mut self.edges, &mut self.unrealised] {
+            edges.retain_mut(|edge| {
+                edge.ends = edge.ends.map(|end| number_of[end]);
+                edge.ends[1] != usize::MAX && edge.ends[0] != usize::MAX
+            });
+        }
+    }
+}
+
 impl Adjacency {
     /// The edges of a sample: their numbers, and the samples at their other ends.
     pub fn of(&self, sample: usize) -> &[(usize, usize)] {

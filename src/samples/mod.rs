@@ -10,19 +10,45 @@
 //! ```
 
 mod area;
+mod assignment;
+mod border;
 mod complete;
 mod drawing;
+mod draws;
+mod edges;
 mod elements;
+mod existence;
+mod given;
 mod graph;
 mod ink;
+mod level;
+mod lines;
+mod neighbours;
 mod options;
+mod orientations;
+mod parallel;
+mod positions;
 mod reconstruct;
+mod resample;
+mod sampling;
+mod scale;
+mod search;
+mod similarity;
+mod source;
+mod start;
+mod synthesis;
 
 pub use area::Area;
 pub use complete::{Change, ChangeKind, CompleteError, CompleteOptions, Completed, complete};
 pub use drawing::{Curve, Drawing, Element};
 pub use elements::{Class, Elements, Placed, Similarity};
+pub use given::Given;
 pub use graph::{Adjacency, Edge, Graph, Kind, Sample};
 pub use ink::inked;
-pub use options::{Level, Options, Start, UnmatchedPrice, Without};
+pub use level::{LevelReport, MOST_NEIGHBOURS, SampleError};
+pub use options::{Border, Level, Options, Start, UnmatchedPrice, Without};
 pub use reconstruct::{Reconstruction, Route, reconstruct};
+pub use sampling::{Resolution, sampled};
+pub use scale::default_levels;
+pub use start::CloneBox;
+pub use synthesis::{Synthesis, synthesize};

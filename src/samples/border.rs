@@ -1,0 +1,103 @@
+//! The border of the area: the pattern is synthesized a little beyond it and cut there.
+//!
+//! Neighbourhoods at a border are halves, and the last samples of a strand are anywhere near it. Beyond the border neither matters. Excluded: cutting
+//! elements, which are whole or are not there.
+
+use glam::DVec2;
+
+use super::area::Area;
+use super::elements::Elements;
+use super::graph::{Edge, Graph, Kind, Sample};
+
+/// Bisections that find where an edge crosses the border.
+const BISECTIONS: usize = 40;
+/// Parts of an edge that are looked at for crossings of the border.
+const PARTS: usize = 16;
+
+/// Cuts the graph at the border of `area`: samples outside go, edges to them end in a new sample on the border. Elements whose ink is not wholly
+/// inside go too. What was given stays where it is.
+pub fn cut(graph: &mut Graph, elements: &mut Elements, area: &Area) {
+    let element_stays: Vec<bool> = elements
+        .placed
+        .iter()
+        .map(|placed| {
+            let drawn = elements.classes[placed.class as usize].drawn(&placed.similarity);
+            drawn.iter().flatten().all(|&p| area.contains(p))
+        })
+        .collect();
+    let inside: Vec<bool> = graph
+        .samples
+        .iter()
+        .map(|s| match s.kind {
+            Kind::Curve => s.is_given || area.contains(s.at),
+            Kind::Element { .. } => element_stays[s.element as usize],
+        })
+        .collect();
+    let mut stubs: Vec<(Sample, Edge)> = Vec::new();
+    let first = graph.samples.len();
+    for edge in &graph.edges {
+        let (a, b) = match edge.ends.map(|end| inside[end]) {
+            [true, false] => (0, 1),
+            [false, true] => (1, 0),
+            _ => continue,
+        };
+        let (kept, lost) = (&graph.samples[edge.ends[a]], &graph.samples[edge.ends[b]]);
+        let cubic = [
+            kept.at,
+            kept.at + edge.handles[a],
+            kept.at + area.way(kept.at, lost.at) + edge.handles[b],
+            kept.at + area.way(kept.at, lost.at),
+        ];
+        let t = exit(&cubic, area);
+        if t <= 0.0 {
+            continue;
+        }
+        let [_, h1, h2, end] = front(&cubic, t);
+        let sample = Sample {
+            at: area.home(end),
+            orientations: vec![(h2 - end).to_angle().rem_euclid(std::f64::consts::TAU)],
+            is_given: false,
+            ..kept.clone()
+        };
+        let ends = [edge.ends[a], first + stubs.len()];
+        stubs.push((sample, Edge { ends, confidence: edge.confidence, handles: [h1 - kept.at, h2 - end] }));
+    }
+    let mut stays = inside;
+    for (sample, edge) in stubs {
+        graph.samples.push(sample);
+        graph.edges.push(edge);
+        stays.push(true);
+    }
+    graph.keep(&stays);
+    let mut number_of = vec![0; elements.placed.len()];
+    let mut next = 0;
+    for (number, _) in number_of.iter_mut().zip(&element_stays).filter(|(_, stays)| **stays) {
+        *number = next;
+        next += 1;
+    }
+    for sample in graph.samples.iter_mut().filter(|s| s.kind != Kind::Curve) {
+        sample.element = number_of[sample.element as usize];
+    }
+    let mut kept = element_stays.iter();
+    elements.placed.retain(|_| *kept.next().expect("one for each element"));
+}
+
+/// The last parameter before a cubic leaves the area for the first time; its beginning is inside.
+fn exit(cubic: &[DVec2; 4], area: &Area) -> f64 {
+    let is_inside = |t: f64| area.contains(front(cubic, t)[3]);
+    let out = (1..=PARTS).map(|i| i as f64 / PARTS as f64).find(|&t| !is_inside(t)).unwrap_or(1.0);
+    let (mut low, mut high) = (out - 1.0 / PARTS as f64, out);
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (low + high);
+        if is_inside(middle) { low = middle } else { high = middle }
+    }
+    low
+}
+
+/// The part of a cubic Bézier curve up to `t` (de Casteljau).
+fn front(cubic: &[DVec2; 4], t: f64) -> [DVec2; 4] {
+    let [a, b, c, d] = *cubic;
+    let (ab, bc, cd) = (a.lerp(b, t), b.lerp(c, t), c.lerp(d, t));
+    let (abc, bcd) = (ab.lerp(bc, t), bc.lerp(cd, t));
+    [a, ab, abc, abc.lerp(bcd, t)]
+}

@@ -1,0 +1,183 @@
+//! What is told of a level, and what is refused.
+
+use serde::Serialize;
+use thiserror::Error;
+
+use super::area::Area;
+use super::graph::Graph;
+use super::options::{Level, Options};
+use super::search::Found;
+use super::source::Source;
+
+/// Neighbourhoods of more samples than this are refused: the search would take hours.
+pub const MOST_NEIGHBOURS: usize = 400;
+/// Neighbourhoods of fewer samples of the exemplar than this say nothing.
+const LEAST_NEIGHBOURS: usize = 3;
+
+/// Why there is no pattern.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum SampleError {
+    /// Nothing is drawn.
+    #[error("the exemplar has neither curves nor elements; draw open or closed strokes, or filled shapes")]
+    Empty,
+    /// One sample, or a few that are alone.
+    #[error(
+        "the exemplar has {samples} sample(s), at most {largest} of them within {radius_mm:.2} mm of one another, and a pattern to learn needs at least {LEAST_NEIGHBOURS}: draw more of it, or use a larger --radii"
+    )]
+    Sparse {
+        /// Samples of the exemplar.
+        samples: usize,
+        /// Those of the largest neighbourhood.
+        largest: usize,
+        /// The radius of neighbourhoods.
+        radius_mm: f64,
+    },
+    /// Too many samples in a neighbourhood.
+    #[error(
+        "a neighbourhood of radius {radius_mm:.2} mm has {largest} samples at a spacing of {spacing_mm:.2} mm, and more than {MOST_NEIGHBOURS} would take hours; 20 to 30 are usual: use a smaller --radii or a larger --spacing"
+    )]
+    Crowded {
+        /// The samples in the largest neighbourhood.
+        largest: usize,
+        /// The radius.
+        radius_mm: f64,
+        /// The spacing.
+        spacing_mm: f64,
+    },
+    /// The area is smaller than a neighbourhood.
+    #[error(
+        "the domain is {width_mm:.2} x {height_mm:.2} mm inside of its pen, less than a neighbourhood of radius {radius_mm:.2} mm: use a larger domain, or a smaller --radii"
+    )]
+    Small {
+        /// The width of the area.
+        width_mm: f64,
+        /// Its height.
+        height_mm: f64,
+        /// The radius of neighbourhoods.
+        radius_mm: f64,
+    },
+    /// A number that cannot be used.
+    #[error("{name} is {found}; wanted {wanted}")]
+    Option {
+        /// What it is called.
+        name: &'static str,
+        /// What it is.
+        found: String,
+        /// What it may be.
+        wanted: &'static str,
+    },
+    /// No sample is inside of the area.
+    #[error("no part of the pattern fits in the domain: use a larger one, or a smaller exemplar")]
+    NoRoom,
+}
+
+/// What happened at a level.
+#[derive(Debug, Clone, PartialEq, Serialize, schemars::JsonSchema)]
+pub struct LevelReport {
+    /// The radius of neighbourhoods in millimetres.
+    pub radius_mm: f64,
+    /// The spacing of samples in millimetres.
+    pub spacing_mm: f64,
+    /// Samples of the exemplar.
+    pub exemplar_samples: usize,
+    /// Samples of the output, at the end.
+    pub samples: usize,
+    /// The mean number of samples in a neighbourhood of the output.
+    pub neighbours: f64,
+    /// The energy of Tu 2020 Eq. 12 before each iteration and after the last, in millimetres.
+    pub energies: Vec<f64>,
+    /// The same for each sample.
+    pub energies_per_sample: Vec<f64>,
+    /// Seconds in all.
+    #[serde(skip)]
+    pub seconds: f64,
+    /// Seconds of searches.
+    #[serde(skip)]
+    pub search_seconds: f64,
+}
+
+impl LevelReport {
+    pub(super) fn new(level: Level, source: &Source) -> Self {
+        Self {
+            radius_mm: level.radius_mm,
+            spacing_mm: level.spacing_mm,
+            exemplar_samples: source.graph.samples.len(),
+            samples: 0,
+            neighbours: 0.0,
+            energies: Vec::new(),
+            energies_per_sample: Vec::new(),
+            seconds: 0.0,
+            search_seconds: 0.0,
+        }
+    }
+
+    /// Adds the energy of what was found: costs, and how far samples are outside of the area.
+    pub(super) fn tell(&mut self, graph: &Graph, found: &[Found], area: &Area) {
+        let costs: f64 = found.iter().map(|(_, cost)| cost).sum();
+        let outside = graph.samples.iter().filter(|s| !s.is_given && !area.contains(s.at));
+        let energy = costs + outside.map(|s| area.depth_mm(s.at)).sum::<f64>();
+        self.energies.push(energy);
+        self.energies_per_sample.push(energy / found.len().max(1) as f64);
+    }
+
+    pub(super) fn finish(&mut self, graph: &Graph, neighbours: f64) {
+        (self.samples, self.neighbours) = (graph.samples.len(), neighbours);
+    }
+}
+
+/// The limit of neighbourhoods.
+pub(super) struct Limit;
+
+impl Limit {
+    pub(super) fn check(largest: usize, level: Level) -> Result<(), SampleError> {
+        match largest > MOST_NEIGHBOURS {
+            true => Err(SampleError::Crowded {
+                largest,
+                radius_mm: level.radius_mm,
+                spacing_mm: level.spacing_mm,
+            }),
+            false => Ok(()),
+        }
+    }
+}
+
+pub(super) fn check(options: &Options, area: &Area) -> Result<(), SampleError> {
+    let refuse = |name, found: String, wanted| Err(SampleError::Option { name, found, wanted });
+    if !(1..=3).contains(&options.levels.len()) {
+        return refuse("the number of levels", options.levels.len().to_string(), "1, 2 or 3");
+    }
+    for level in &options.levels {
+        for (name, mm) in [("a radius", level.radius_mm), ("a spacing", level.spacing_mm)] {
+            if !(mm.is_finite() && mm > 0.0) {
+                return refuse(name, format!("{mm} mm"), "a length above 0 mm");
+            }
+        }
+        if level.radius_mm < level.spacing_mm {
+            let found = format!("{} mm, less than the spacing of {} mm", level.radius_mm, level.spacing_mm);
+            return refuse("a radius", found, "at least the spacing, or neighbourhoods hold nothing");
+        }
+    }
+    if options.levels.windows(2).any(|pair| pair[1].spacing_mm > pair[0].spacing_mm) {
+        let all: Vec<String> = options.levels.iter().map(|level| level.spacing_mm.to_string()).collect();
+        return refuse("--spacing", all.join(", "), "lengths from coarse to fine");
+    }
+    let (low, high) = area.bounds_mm();
+    let size = high - low;
+    let radius_mm = options.levels.iter().map(|level| level.radius_mm).fold(0.0, f64::max);
+    if area.region().is_empty() || size.min_element() < radius_mm {
+        return Err(SampleError::Small { width_mm: size.x, height_mm: size.y, radius_mm });
+    }
+    Ok(())
+}
+
+pub(super) fn check_source(source: &Source, level: Level) -> Result<(), SampleError> {
+    let (samples, largest) = (source.graph.samples.len(), source.near.largest());
+    if samples == 0 {
+        return Err(SampleError::Empty);
+    }
+    Limit::check(largest, level)?;
+    match largest < LEAST_NEIGHBOURS {
+        true => Err(SampleError::Sparse { samples, largest, radius_mm: level.radius_mm }),
+        false => Ok(()),
+    }
+}

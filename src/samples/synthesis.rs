@@ -1,0 +1,371 @@
+//! The whole method: search and assignment in turn, from the coarsest level to the finest (Tu 2020 §4.3).
+
+use std::time::Instant;
+
+use glam::DVec2;
+
+use super::area::Area;
+use super::border;
+use super::drawing::Drawing;
+use super::edges;
+use super::elements::{Elements, Placed, Similarity};
+use super::existence;
+use super::given::Given;
+use super::graph::{Graph, Kind, Sample};
+use super::level::{LevelReport, Limit, SampleError};
+use super::neighbours::Neighbourhoods;
+use super::options::{Border, Level, Options, Start};
+use super::orientations;
+use super::positions;
+use super::resample::resampled;
+use super::sampling::{Resolution, sampled};
+use super::search::{Found, Route, matchings, search};
+use super::similarity::{Likeness, Matching};
+use super::source::Source;
+use super::start;
+
+/// What was synthesized.
+#[derive(Debug, Clone)]
+pub struct Synthesis {
+    /// Samples and edges at the finest level.
+    pub graph: Graph,
+    /// The classes of the exemplar's elements, and the output's elements, which samples name by number.
+    pub elements: Elements,
+    /// What was given, as it was drawn.
+    pub given: Drawing,
+    /// What happened at each level.
+    pub levels: Vec<LevelReport>,
+}
+
+/// A pattern like `exemplar` all over `area`. `progress` is told the level and the iteration that begins.
+///
+/// # Errors
+/// [`SampleError`] for an exemplar with too little in it, levels that cannot be, an area with no room, and neighbourhoods that are too large.
+pub fn synthesize(
+    exemplar: &Drawing,
+    area: &Area,
+    options: &Options,
+    given: &Given,
+    progress: &mut dyn FnMut(usize, usize),
+) -> Result<Synthesis, SampleError> {
+    super::level::check(options, area)?;
+    let wanted = area;
+    let area = &match options.border {
+        Border::Cut => area.grown(options.levels.iter().map(|level| level.radius_mm).fold(0.0, f64::max)),
+        Border::Within => area.clone(),
+    };
+    let elements = Elements::of(&exemplar.elements);
+    let bounds_mm = exemplar.bounds_mm().ok_or(SampleError::Empty)?;
+    let levels = options.levels.len();
+    let mut output = Output { graph: Graph::default(), placed: Vec::new(), found: Vec::new() };
+    let mut reports = Vec::new();
+    for (number, &level) in options.levels.iter().enumerate() {
+        let began = Instant::now();
+        let resolution = Resolution { level: number, levels, spacing_mm: level.spacing_mm };
+        let source = Source::new(sampled(exemplar, &elements, resolution), bounds_mm, level.radius_mm);
+        super::level::check_source(&source, level)?;
+        let fixed = given.sampled(&elements, resolution);
+        let run = Run { source: &source, elements: &elements, area, options, number, level };
+        match number {
+            0 => run.begin(&mut output, fixed, &given.clones),
+            _ => run.refine(&mut output, fixed),
+        }
+        if output.graph.samples.is_empty() {
+            return Err(SampleError::NoRoom);
+        }
+        let mut report = run.iterate(&mut output, progress)?;
+        report.seconds = began.elapsed().as_secs_f64();
+        reports.push(report);
+    }
+    let mut elements = Elements { classes: elements.classes, placed: output.placed };
+    border::cut(&mut output.graph, &mut elements, wanted);
+    if output.graph.samples.is_empty() {
+        return Err(SampleError::NoRoom);
+    }
+    Ok(Synthesis { graph: output.graph, elements, given: given.drawing.clone(), levels: reports })
+}
+
+/// The output between iterations.
+struct Output {
+    graph: Graph,
+    /// Its elements.
+    placed: Vec<Placed>,
+    /// For each sample the exemplar's that its neighbourhood is like, as far as it is known.
+    found: Vec<Option<usize>>,
+}
+
+/// One level.
+struct Run<'a> {
+    source: &'a Source,
+    elements: &'a Elements,
+    area: &'a Area,
+    options: &'a Options,
+    number: usize,
+    level: Level,
+}
+
+impl Run<'_> {
+    /// The first samples of the coarsest level.
+    fn begin(&self, output: &mut Output, given: Graph, clones: &[start::CloneBox]) {
+        let started = match self.options.start {
+            Start::Patches => {
+                start::patches(self.source, given, clones, self.area, self.options, self.level.spacing_mm)
+            }
+            Start::Noise => start::noise(self.source, given, self.area, self.options),
+        };
+        output.graph = started.graph;
+        output.found = self.middles_near(&output.graph, &started.origins);
+        for (s, origin) in started.origins.iter().enumerate() {
+            let sample = &mut output.graph.samples[s];
+            if let Kind::Element { class, .. } = sample.kind {
+                let like = origin.map(|i| self.source.graph.samples[i].element);
+                place(
+                    &mut output.placed,
+                    sample,
+                    class,
+                    like.map(|e| self.elements.placed[e as usize].similarity),
+                );
+            }
+        }
+    }
+
+    /// The same samples of the exemplar, or the nearest that may be the middle of a neighbourhood.
+    fn middles_near(&self, graph: &Graph, origins: &[Option<usize>]) -> Vec<Option<usize>> {
+        let finders = self.source.finders();
+        let near = |s: &Sample, origin: &Option<usize>| {
+            let at = self.source.graph.samples[(*origin)?].at;
+            finders.get(&s.kind)?.nearest(at)
+        };
+        graph.samples.iter().zip(origins).map(|(s, origin)| near(s, origin)).collect()
+    }
+
+    /// The samples of the level before, at this one's spacing.
+    fn refine(&self, output: &mut Output, given: Graph) {
+        let coarse = &output.graph;
+        let (mut fine, parents) = resampled(coarse, self.area, self.level.spacing_mm);
+        let finders = self.source.finders();
+        let mut found: Vec<Option<usize>> = fine
+            .samples
+            .iter()
+            .zip(&parents)
+            .map(|(s, &parent)| {
+                let aim = self
+                    .source
+                    .side_of(output.found[parent]?, self.area.way(coarse.samples[parent].at, s.at));
+                finders.get(&Kind::Curve)?.nearest(aim?)
+            })
+            .collect();
+        for (number, placed) in output.placed.iter().enumerate() {
+            let points = self.points(placed.class);
+            for (point, p) in (0..).zip(points) {
+                fine.samples.push(Sample {
+                    at: placed.similarity.apply(p),
+                    kind: Kind::Element { class: placed.class, point },
+                    orientations: Vec::new(),
+                    width_mm: 0.0,
+                    existence: 1.0,
+                    is_given: false,
+                    element: number as u32,
+                });
+                found.push(None);
+            }
+        }
+        super::given::exchange(&mut fine, &mut found, given, self.area);
+        (output.graph, output.found) = (fine, found);
+    }
+
+    fn points(&self, class: u32) -> Vec<DVec2> {
+        let class = &self.elements.classes[class as usize];
+        class.points(self.number, self.options.levels.len(), self.level.spacing_mm)
+    }
+
+    fn iterate(
+        &self,
+        output: &mut Output,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<LevelReport, SampleError> {
+        let mut report = LevelReport::new(self.level, self.source);
+        for iteration in 0..self.options.iterations {
+            progress(self.number, iteration);
+            let is_last = iteration + 1 == self.options.iterations;
+            let passes = self.options.passes[usize::from(iteration > 0)];
+            let began = Instant::now();
+            let near = self.neighbourhoods(&output.graph)?;
+            let found = self.found(output, &near, passes, iteration);
+            let matchings = {
+                let likeness = self.likeness(&output.graph, &near);
+                matchings(&likeness, &found)
+            };
+            report.search_seconds += began.elapsed().as_secs_f64();
+            report.tell(&output.graph, &found, self.area);
+            self.assign(output, &matchings, &found, iteration, is_last);
+            if output.graph.samples.is_empty() {
+                return Err(SampleError::NoRoom);
+            }
+        }
+        let near = self.neighbourhoods(&output.graph)?;
+        let found = self.found(output, &near, 1, self.options.iterations);
+        report.tell(&output.graph, &found, self.area);
+        report.finish(&output.graph, near.mean());
+        Ok(report)
+    }
+
+    fn neighbourhoods(&self, graph: &Graph) -> Result<Neighbourhoods, SampleError> {
+        let points: Vec<DVec2> = graph.samples.iter().map(|s| s.at).collect();
+        let near = Neighbourhoods::new(&points, self.level.radius_mm, Some(self.area));
+        Limit::check(near.largest(), self.level)?;
+        Ok(near)
+    }
+
+    fn likeness<'b>(&'b self, graph: &'b Graph, near: &'b Neighbourhoods) -> Likeness<'b> {
+        Likeness::new(self.source, (graph, near), self.area, self.options, self.level.spacing_mm)
+    }
+
+    fn found(&self, output: &Output, near: &Neighbourhoods, passes: usize, iteration: usize) -> Vec<Found> {
+        let route = Route::new(&output.graph, self.area, self.options.search_neighbours);
+        let purpose = [3, self.number as u64, iteration as u64];
+        let likeness = self.likeness(&output.graph, near);
+        search(&likeness, &route, &output.found, passes, self.options, &purpose)
+    }
+
+    /// The assignment step: positions, edges, directions, and which samples there are.
+    fn assign(
+        &self,
+        output: &mut Output,
+        matchings: &[Matching],
+        found: &[Found],
+        iteration: usize,
+        is_last: bool,
+    ) {
+        let graph = &mut output.graph;
+        let moves = positions::moves(graph, self.source, matchings, self.area);
+        let keeps_existence = self.options.without.existence;
+        existence::believe(graph, matchings);
+        let fresh = match keeps_existence || is_last {
+            true => Vec::new(),
+            false => existence::missing(
+                graph,
+                self.source,
+                matchings,
+                self.area,
+                self.options,
+                (self.level.radius_mm, self.level.spacing_mm),
+                |kind| kind == Kind::Curve || self.number == 0,
+            ),
+        };
+        let purpose = [4, self.number as u64, iteration as u64];
+        orientations::turn_all(graph, self.source, matchings, self.options.seed, &purpose);
+        for (sample, by) in graph.samples.iter_mut().zip(moves) {
+            if !sample.is_given {
+                sample.at = self.area.home(sample.at + by);
+            }
+        }
+        edges::join(graph, self.source, matchings, self.area, self.options);
+        output.found = found.iter().map(|&(input, _)| Some(input)).collect();
+        if !keeps_existence {
+            self.remove(output);
+        }
+        let origins: Vec<Option<usize>> = fresh.iter().map(|(_, input)| Some(*input)).collect();
+        let added =
+            Graph { samples: fresh.into_iter().map(|(sample, _)| sample).collect(), ..Graph::default() };
+        output.found.extend(self.middles_near(&added, &origins));
+        for (mut sample, origin) in added.samples.into_iter().zip(origins) {
+            if let Kind::Element { class, .. } = sample.kind {
+                let like = origin.map(|i| self.source.graph.samples[i].element);
+                place(
+                    &mut output.placed,
+                    &mut sample,
+                    class,
+                    like.map(|e| self.elements.placed[e as usize].similarity),
+                );
+            }
+            output.graph.samples.push(sample);
+        }
+        self.put_elements(output);
+    }
+
+    /// Takes out samples that are not believed in, elements as wholes.
+    fn remove(&self, output: &mut Output) {
+        let graph = &mut output.graph;
+        let mut belief = vec![[0.0; 2]; output.placed.len()];
+        for sample in graph.samples.iter().filter(|s| s.kind != Kind::Curve) {
+            let [sum, count] = &mut belief[sample.element as usize];
+            (*sum, *count) = (*sum + sample.existence, *count + 1.0);
+        }
+        let stays: Vec<bool> = graph
+            .samples
+            .iter()
+            .map(|sample| {
+                let existence = match sample.kind {
+                    Kind::Curve => sample.existence,
+                    Kind::Element { .. } => {
+                        belief[sample.element as usize][0] / belief[sample.element as usize][1]
+                    }
+                };
+                sample.is_given || existence >= self.options.least_existence
+            })
+            .collect();
+        let mut kept = stays.iter();
+        output.found.retain(|_| *kept.next().expect("one for each sample"));
+        graph.keep(&stays);
+    }
+
+    /// No smaller and no larger than the exemplar's elements of the class are.
+    fn in_size(&self, class: u32, fitted: Similarity) -> Similarity {
+        let sizes = self
+            .elements
+            .placed
+            .iter()
+            .filter(|placed| placed.class == class)
+            .map(|p| p.similarity.turn.length());
+        let (least, most) =
+            sizes.fold((f64::INFINITY, 0.0_f64), |(least, most), size| (least.min(size), most.max(size)));
+        let size = fitted.turn.length();
+        let turn = if size > 0.0 { fitted.turn / size } else { DVec2::X };
+        Similarity { turn: turn * size.clamp(least, most), ..fitted }
+    }
+
+    /// Where elements are, by their samples. Elements without samples are gone.
+    fn put_elements(&self, output: &mut Output) {
+        let samples = &mut output.graph.samples;
+        let mut targets: Vec<Vec<(u32, DVec2)>> = vec![Vec::new(); output.placed.len()];
+        for sample in samples.iter() {
+            if let Kind::Element { point, .. } = sample.kind {
+                targets[sample.element as usize].push((point, sample.at));
+            }
+        }
+        let mut number_of = vec![u32::MAX; output.placed.len()];
+        let mut placed: Vec<Placed> = Vec::new();
+        for (number, targets) in targets.iter().enumerate() {
+            if targets.is_empty() {
+                continue;
+            }
+            number_of[number] = placed.len() as u32;
+            let old = output.placed[number];
+            let points = self.points(old.class);
+            let similarity = match points.len() {
+                1 => Similarity { shift: targets[0].1, ..old.similarity },
+                _ => {
+                    // Samples of one element lie within it, on one side of a seam.
+                    let middle = old.similarity.shift;
+                    let from: Vec<DVec2> = targets.iter().map(|t| points[t.0 as usize]).collect();
+                    let to: Vec<DVec2> =
+                        targets.iter().map(|t| middle + self.area.way(middle, t.1)).collect();
+                    self.in_size(old.class, Similarity::fitted(&from, &to))
+                }
+            };
+            placed.push(Placed { similarity, ..old });
+        }
+        for sample in samples.iter_mut().filter(|s| s.kind != Kind::Curve) {
+            sample.element = number_of[sample.element as usize];
+        }
+        output.placed = placed;
+    }
+}
+
+/// Gives a new sample in the middle of an element its element, turned and scaled as `like`.
+fn place(placed: &mut Vec<Placed>, sample: &mut Sample, class: u32, like: Option<Similarity>) {
+    let similarity = like.unwrap_or(Similarity::shifted(DVec2::ZERO));
+    sample.element = placed.len() as u32;
+    placed.push(Placed { class, similarity: Similarity { shift: sample.at, ..similarity } });
+}
