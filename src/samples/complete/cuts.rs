@@ -39,7 +39,7 @@ impl Planner<'_, '_> {
         let mut steps = Vec::new();
         for cut in self.cuts() {
             let [a, b] = cut.faces.map(|face| sets.find(face));
-            if a == b || steps.len() == needed {
+            if a == b || steps.len() == needed || self.would_open_ring(&mut sets, [a, b]) {
                 continue;
             }
             let step = Step::remove(ChangeKind::Open, cut.edges, &self.scene.work);
@@ -49,6 +49,14 @@ impl Planner<'_, '_> {
             }
         }
         steps
+    }
+
+    /// Whether uniting two sets of faces would leave no ink that winds round, where that is wanted.
+    fn would_open_ring(&self, sets: &mut Sets, [a, b]: [usize; 2]) -> bool {
+        self.inside.is_some_and(|inside| {
+            let (outside, inside) = (sets.find(0), sets.find(inside));
+            outside != inside && [a.min(b), a.max(b)] == [outside.min(inside), outside.max(inside)]
+        })
     }
 
     /// Up to `needed` steps of which each makes two components of one.
@@ -61,7 +69,14 @@ impl Planner<'_, '_> {
     /// A step that opens a hole where after it the fewest more would have to be opened to part the component: what two faces share
     /// in two places parts when both are cut, and of three faces that meet in pairs all.
     pub fn opening_to_part(&self) -> Option<Step> {
-        let cuts: Vec<Cut> = self.cuts().into_iter().filter(|cut| cut.faces[0] != cut.faces[1]).collect();
+        let cuts: Vec<Cut> = self
+            .cuts()
+            .into_iter()
+            .filter(|cut| cut.faces[0] != cut.faces[1])
+            .filter(|cut| {
+                self.inside.is_none_or(|inside| !cut.faces.contains(&0) || !cut.faces.contains(&inside))
+            })
+            .collect();
         let mut shared: BTreeMap<[usize; 2], usize> = BTreeMap::new();
         let mut around: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
         for &Cut { faces: [a, b], .. } in &cuts {
@@ -112,7 +127,7 @@ impl Planner<'_, '_> {
             is_loop || (0..2).all(|side| is_held[side] || remains[side] >= CRUMB_PENS * work.pen_mm)
         };
         let is_whole =
-            is_held == [true; 2] && !is_loop && length(0..count) < WHOLE_SPACINGS * scene.spacing_mm();
+            is_held == [true; 2] && !is_loop && length(0..count) < WHOLE_SPACINGS * scene.spacing_mm;
         let range = match is_whole {
             true => 0..count,
             false => self.gaps(strand).find(leaves_no_crumb)?,
@@ -173,7 +188,7 @@ fn faces(scene: &Scene, edge: usize) -> Option<[usize; 2]> {
     [0.5, 0.3, 0.7].into_iter().find_map(|t| {
         let along = point_at(&cubic, t + 0.05) - point_at(&cubic, t - 0.05);
         let across = along.perp().normalize_or_zero() * off_mm;
-        let face = |p| scene.places.face(work.place(p));
+        let face = |p| scene.places.face(work.plane.place(p));
         Some([face(point_at(&cubic, t) + across)?, face(point_at(&cubic, t) - across)?])
     })
 }

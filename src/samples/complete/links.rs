@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::DVec2;
+use kurbo::{ParamCurve, ParamCurveArclen};
 
 use super::ChangeKind;
 use super::lines::{Line, Lines, Owner, Run};
@@ -28,6 +29,8 @@ pub(super) struct Planner<'s, 'a> {
     pub scene: &'s Scene<'a>,
     /// Whether strokes that would touch other ink are tried as well: how the counts then change is seen when it is done.
     pub is_bold: bool,
+    /// The face inside of a ring that has to stay closed.
+    pub inside: Option<usize>,
     /// Is told a step that is thought of.
     pub is_banned: &'s dyn Fn(&Step) -> bool,
 }
@@ -61,7 +64,7 @@ impl Planner<'_, '_> {
                 steps.push(step);
             }
         }
-        let mut reach_mm = 3.0 * scene.spacing_mm();
+        let mut reach_mm = 3.0 * scene.spacing_mm;
         for _ in 0..=DOUBLINGS {
             for ([p, q], link) in self.between_parts(reach_mm, &mut sets) {
                 if steps.len() == needed {
@@ -103,7 +106,7 @@ impl Planner<'_, '_> {
         });
         let mut candidates: Vec<_> = voted.collect();
         for doubling in 0..4 {
-            let reach_mm = scene.spacing_mm() * f64::from(3 << doubling);
+            let reach_mm = scene.spacing_mm * f64::from(3 << doubling);
             candidates.extend(
                 self.within_parts(reach_mm).into_iter().map(|link| (ChangeKind::Enclose, link, None)),
             );
@@ -223,7 +226,7 @@ impl Planner<'_, '_> {
         links.into_iter().map(|(_, link)| link).collect()
     }
 
-    /// The set of parts that has the most edges.
+    /// The set of parts that has the frame, or the most edges.
     fn largest_set(&self, sets: &mut Sets) -> usize {
         let mut counts = vec![0; self.scene.region.components()];
         for edge in self.scene.work.present() {
@@ -231,10 +234,15 @@ impl Planner<'_, '_> {
                 counts[sets.find(part)] += 1;
             }
         }
+        for stroke in 0..self.scene.work.frame.len() {
+            if let Some(part) = self.scene.part(Owner::Frame(stroke)) {
+                return sets.find(part);
+            }
+        }
         (1..counts.len()).fold(0, |best, i| if counts[i] > counts[best] { i } else { best })
     }
 
-    /// All places from which links may go, with their parts: samples, middles of edges, and points of outlines of elements.
+    /// All places from which links may go, with their parts: samples, middles of long edges, points of elements' outlines and of the frame.
     fn ports(&self) -> Vec<(usize, Port)> {
         let (scene, work) = (self.scene, &self.scene.work);
         let samples = (0..work.samples.len()).filter(|&i| work.samples[i].kind == Kind::Curve);
@@ -253,6 +261,18 @@ impl Planner<'_, '_> {
                 let next = contour[(i + 1) % contour.len()];
                 let at = contour[i] + self.inward(next - contour[i]);
                 ports.push((part, Port { foot: Foot::Ink(at), at, owner: Some(owner), onward: None }));
+            }
+        }
+        for (number, curve) in work.frame.iter().enumerate() {
+            let owner = Owner::Frame(number);
+            let Some(part) = scene.part(owner) else { continue };
+            for segment in curve.path.segments() {
+                let count = (segment.arclen(0.1) / scene.spacing_mm).ceil().clamp(1.0, 64.0) as u32;
+                for i in 0..count {
+                    let p = segment.eval((f64::from(i) + 0.5) / f64::from(count));
+                    let at = DVec2::new(p.x, p.y);
+                    ports.push((part, Port { foot: Foot::Ink(at), at, owner: Some(owner), onward: None }));
+                }
             }
         }
         ports

@@ -25,7 +25,7 @@ mod work;
 use glam::DVec2;
 use thiserror::Error;
 
-use super::{Area, Drawing, Element, Graph, Options};
+use super::{Area, Drawing, Element, Graph, Options, inked};
 use crate::planar::{GridError, Region};
 use crate::topology::Goal;
 use links::Planner;
@@ -121,7 +121,7 @@ pub struct Completed {
     pub graph: Graph,
     /// Its strokes and elements, and the frame.
     pub drawing: Drawing,
-    /// What they cover.
+    /// What they cover; of a rolled area as it is drawn, open.
     pub region: Region,
     /// Components, counted on the region; of a rolled area as it stands.
     pub components: usize,
@@ -230,9 +230,20 @@ impl<'a> Completion<'a> {
         off(self.goal.components, region.components()).saturating_add(off(self.goal.holes, region.holes()))
     }
 
+    /// The face inside of the ink that goes round a rolled area, if that has to stay closed.
+    fn kept_inside(&self, scene: &Scene) -> Option<usize> {
+        let middle = scene.work.plane.middle().filter(|_| self.goal.closed_pattern)?;
+        scene.places.face(middle)
+    }
+
     /// The changes of one kind that should bring a count to what is wanted, components first.
     fn planned(&self, scene: &Scene, is_bold: bool) -> Vec<Step> {
-        let planner = Planner { scene, is_bold, is_banned: &|step| self.banned.contains(&step.change) };
+        let planner = Planner {
+            scene,
+            is_bold,
+            inside: self.kept_inside(scene),
+            is_banned: &|step| self.banned.contains(&step.change),
+        };
         let (components, holes) = (scene.region.components(), scene.region.holes());
         let [too_many, too_few] = off(self.goal.components, components);
         let [holes_too_many, holes_too_few] = off(self.goal.holes, holes);
@@ -294,8 +305,12 @@ impl<'a> Completion<'a> {
         if too_few == 0 || self.trials >= MOST_TRIALS {
             return Ok((scene, false));
         }
-        let planner =
-            Planner { scene: &scene, is_bold: false, is_banned: &|step| self.banned.contains(&step.change) };
+        let planner = Planner {
+            scene: &scene,
+            is_bold: false,
+            inside: self.kept_inside(&scene),
+            is_banned: &|step| self.banned.contains(&step.change),
+        };
         let Some(step) = planner.opening_to_part() else { return Ok((scene, false)) };
         self.trials += 1;
         let mut work = scene.work.clone();
@@ -309,7 +324,11 @@ impl<'a> Completion<'a> {
 
     fn completed(self, scene: Scene) -> Result<Completed, CompleteError> {
         let (components, holes) = (scene.region.components(), scene.region.holes());
-        let region = scene.work.inked_flat(&scene.drawn.drawing, scene.region)?;
+        let (area, completing) = (scene.work.area, scene.work.completing);
+        let region = match area.lap_mm() {
+            Some(_) => inked(&scene.drawn.drawing, area.region().grid(), completing.chord_mm)?,
+            None => scene.region,
+        };
         let graph = scene.work.graph();
         Ok(Completed {
             graph,

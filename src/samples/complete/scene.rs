@@ -18,6 +18,8 @@ pub(super) struct Scene<'a> {
     pub lines: Lines,
     pub places: Places,
     pub by_sample: Vec<Vec<usize>>,
+    /// A length that is usual between two samples: the middle one of all edges.
+    pub spacing_mm: f64,
     /// The part of the region that an edge, a contour, a stroke of the frame is in.
     edge_parts: Vec<Option<usize>>,
     contour_parts: Vec<Option<usize>>,
@@ -34,7 +36,7 @@ impl<'a> Scene<'a> {
     /// The same where it is inked already.
     pub fn with_ink(work: Work<'a>, drawn: Reconstruction, region: Region) -> Self {
         let places = Places::new(&region);
-        let part = |p| places.part(work.place(p));
+        let part = |p| places.part(work.plane.place(p));
         let edge_part =
             |edge| if work.is_there[edge] { part(point_at(&work.cubic(edge), 0.5)) } else { None };
         let edge_parts = (0..work.edges.len()).map(edge_part).collect();
@@ -48,7 +50,21 @@ impl<'a> Scene<'a> {
         });
         let frame_parts = frame_parts.collect();
         let (lines, by_sample) = (Lines::new(&work), work.edges_by_sample());
-        Self { work, drawn, region, lines, places, by_sample, edge_parts, contour_parts, frame_parts }
+        let mut lengths: Vec<f64> = work.present().map(|edge| work.length_mm(edge)).collect();
+        lengths.sort_by(f64::total_cmp);
+        let spacing_mm = lengths.get(lengths.len() / 2).copied().unwrap_or(4.0 * work.pen_mm);
+        Self {
+            work,
+            drawn,
+            region,
+            lines,
+            places,
+            by_sample,
+            spacing_mm,
+            edge_parts,
+            contour_parts,
+            frame_parts,
+        }
     }
 
     /// The part of the region that ink is in; `None` for what was only just added.
@@ -96,13 +112,6 @@ impl<'a> Scene<'a> {
     pub fn free_ends(&self) -> Vec<(usize, usize)> {
         let curves = (0..self.work.samples.len()).filter(|&i| self.work.samples[i].kind == Kind::Curve);
         curves.filter_map(|sample| Some((sample, self.free_end(sample)?))).collect()
-    }
-
-    /// A length that is usual between two samples: the middle one of all edges.
-    pub fn spacing_mm(&self) -> f64 {
-        let mut lengths: Vec<f64> = self.work.present().map(|edge| self.work.length_mm(edge)).collect();
-        lengths.sort_by(f64::total_cmp);
-        lengths.get(lengths.len() / 2).copied().unwrap_or(4.0 * self.work.pen_mm)
     }
 
     /// What a new stroke keeps from ink that it does not touch.

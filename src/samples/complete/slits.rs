@@ -14,10 +14,6 @@ const LEAST_CHORDS: f64 = 8.0;
 /// Dabs of the pen that fill holes with less area than the square of the least gap.
 pub(super) fn filled(scene: &Scene) -> Vec<Step> {
     let work = &scene.work;
-    if work.area.lap_mm().is_some() {
-        // The region is not where the pattern is.
-        return Vec::new();
-    }
     let grid = scene.region.grid();
     let least_mm = work.completing.min_gap_mm.max(LEAST_CHORDS * work.completing.chord_mm);
     let holes = scene.region.parts().iter().flat_map(|part| part.holes());
@@ -27,7 +23,12 @@ pub(super) fn filled(scene: &Scene) -> Vec<Step> {
         let far =
             |from: DVec2| points.iter().copied().max_by(|a, b| a.distance(from).total_cmp(&b.distance(from)));
         let a = far(points[0])?;
-        let ends = [a, far(a)?].map(|at| Port { foot: Foot::Ink(at), at, owner: None, onward: None });
+        let ends = [a, far(a)?].map(|at| work.plane.back(at)).map(|at| Port {
+            foot: Foot::Ink(at),
+            at,
+            owner: None,
+            onward: None,
+        });
         let [from, to] = ends;
         Some(Step::add(ChangeKind::Fill, &Link::smooth(scene, &from, &to), None))
     };

@@ -171,6 +171,33 @@ fn a_small_net_gets_every_pair_of_counts() {
     assert!(met >= 16, "{met} of 18");
 }
 
+#[test]
+fn a_rolled_net_is_one_component_that_winds_round() {
+    let (columns, rows) = (12, 5);
+    let lap_mm = columns as f64 * CELL_MM;
+    let grid = Grid::for_extent(400.0).unwrap();
+    let high = (rows + 1) as f64 * CELL_MM;
+    let corners = [(-lap_mm, 0.0), (2.0 * lap_mm, 0.0), (2.0 * lap_mm, high), (-lap_mm, high)];
+    let path: Vec<GridPoint> = corners.iter().map(|&(x, y)| grid.snap(DVec2::new(x, y)).unwrap()).collect();
+    let area = Area::rolled(Region::fill(grid, &[path], FillRule::NonZero), lap_mm);
+    let mut graph = net(columns, rows, 0.6, &mut Dice(4));
+    graph.samples.iter_mut().for_each(|sample| sample.at = area.home(sample.at));
+    // Row by row the last sample is beside the first.
+    for row in 0..rows {
+        let ends = [row * columns, row * columns + columns - 1];
+        graph.unrealised.push(Edge { ends, confidence: 0.0, handles: [DVec2::ZERO; 2] });
+    }
+    for frame_mm in [None, Some(2.0)] {
+        let goal = Goal { closed_pattern: frame_mm.is_some(), ..goal(Some(1), Some(8)) };
+        let completing = CompleteOptions { frame_mm, ..CompleteOptions::default() };
+        let completed = complete(&graph, &[], &area, &Options::default(), &goal, &completing).unwrap();
+        assert_eq!((completed.components, completed.holes), (1, 8));
+        let plane = crate::samples::ink::CountingPlane::of(&area);
+        let counted = plane.inked(&completed.drawing, grid, 0.01).unwrap();
+        assert_eq!((counted.components(), counted.holes()), (1, 8));
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 

@@ -70,7 +70,7 @@ impl Tidy<'_, '_> {
         for end in self.open.clone() {
             let from = scene.port(end);
             let at = work.area.nearest(from.at);
-            if at.distance(from.at) < scene.spacing_mm() {
+            if at.distance(from.at) < scene.spacing_mm {
                 let near = self.lines.near(at, 0.0);
                 let Some(owner) = near
                     .iter()
@@ -110,7 +110,7 @@ impl Tidy<'_, '_> {
     /// Pairs of ends that point at each other and are near, the nearest first.
     fn join_pointing(&mut self) {
         let scene = self.scene;
-        let reach_mm = scene.work.completing.reach_mm.unwrap_or(0.6 * scene.spacing_mm());
+        let reach_mm = scene.work.completing.reach_mm.unwrap_or(0.6 * scene.spacing_mm);
         let mut pairs = Vec::new();
         for (i, &a) in self.open.iter().enumerate() {
             for &b in &self.open[..i] {

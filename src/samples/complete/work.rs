@@ -7,8 +7,9 @@ use glam::DVec2;
 use super::CompleteOptions;
 use super::frame::frame;
 use crate::planar::{GridError, Region};
+use crate::samples::ink::CountingPlane;
 use crate::samples::{
-    Area, Curve, Drawing, Edge, Element, Graph, Kind, Options, Reconstruction, Sample, inked, reconstruct,
+    Area, Curve, Drawing, Edge, Element, Graph, Kind, Options, Reconstruction, Sample, reconstruct,
 };
 
 /// Where an edge that is added ends.
@@ -51,6 +52,8 @@ pub(super) struct Work<'a> {
     pub area: &'a Area,
     options: &'a Options,
     pub completing: &'a CompleteOptions,
+    /// Where its ink is counted.
+    pub plane: CountingPlane,
     /// The strokes of the frame.
     pub frame: Vec<Curve>,
     /// The pen for what is added where there is none.
@@ -87,6 +90,7 @@ impl<'a> Work<'a> {
             area,
             options,
             completing,
+            plane: CountingPlane::of(area),
             frame: completing.frame_mm.map_or_else(Vec::new, |width_mm| frame(area, width_mm)),
             pen_mm: 0.0,
             split: BTreeMap::new(),
@@ -264,18 +268,8 @@ impl<'a> Work<'a> {
         drawn
     }
 
-    /// What a drawing of it covers, in the plane where its counts hold.
+    /// What a drawing of it covers, in the plane where it is counted.
     pub fn inked(&self, drawing: &Drawing) -> Result<Region, GridError> {
-        inked(drawing, self.area.region().grid(), self.completing.chord_mm)
-    }
-
-    /// The same in the plane of the area, where `counted` is what the counts were taken of.
-    pub fn inked_flat(&self, _drawing: &Drawing, counted: Region) -> Result<Region, GridError> {
-        Ok(counted)
-    }
-
-    /// Where a place of the area is in the plane where the counts hold.
-    pub fn place(&self, p: DVec2) -> DVec2 {
-        p
+        self.plane.inked(drawing, self.area.region().grid(), self.completing.chord_mm)
     }
 }
