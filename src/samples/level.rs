@@ -88,6 +88,8 @@ pub struct LevelReport {
     pub energies: Vec<f64>,
     /// The same for each sample.
     pub energies_per_sample: Vec<f64>,
+    /// The last of these with nothing left out of the measure, so that results that were made without a part of the method can be compared.
+    pub full_energy_per_sample: f64,
     /// Seconds in all.
     #[serde(skip)]
     pub seconds: f64,
@@ -106,16 +108,15 @@ impl LevelReport {
             neighbours: 0.0,
             energies: Vec::new(),
             energies_per_sample: Vec::new(),
+            full_energy_per_sample: 0.0,
             seconds: 0.0,
             search_seconds: 0.0,
         }
     }
 
-    /// Adds the energy of what was found: costs, and how far samples are outside of the area.
+    /// Adds the energy of what was found.
     pub(super) fn tell(&mut self, graph: &Graph, found: &[Found], area: &Area) {
-        let costs: f64 = found.iter().map(|(_, cost)| cost).sum();
-        let outside = graph.samples.iter().filter(|s| !s.is_given && !area.contains(s.at));
-        let energy = costs + outside.map(|s| area.depth_mm(s.at)).sum::<f64>();
+        let energy = energy(graph, found, area);
         self.energies.push(energy);
         self.energies_per_sample.push(energy / found.len().max(1) as f64);
     }
@@ -123,6 +124,13 @@ impl LevelReport {
     pub(super) fn finish(&mut self, graph: &Graph, neighbours: f64) {
         (self.samples, self.neighbours) = (graph.samples.len(), neighbours);
     }
+}
+
+/// The energy of Tu 2020 Eq. 12: costs, and how far samples are outside of the area.
+pub(super) fn energy(graph: &Graph, found: &[Found], area: &Area) -> f64 {
+    let costs: f64 = found.iter().map(|(_, cost)| cost).sum();
+    let outside = graph.samples.iter().filter(|s| !s.is_given && !area.contains(s.at));
+    costs + outside.map(|s| area.depth_mm(s.at)).sum::<f64>()
 }
 
 /// The limit of neighbourhoods.

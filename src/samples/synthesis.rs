@@ -14,7 +14,7 @@ use super::given::Given;
 use super::graph::{Graph, Kind, Sample};
 use super::level::{LevelReport, Limit, SampleError};
 use super::neighbours::Neighbourhoods;
-use super::options::{Border, Level, Options, Start};
+use super::options::{Border, Level, Options, Start, Without};
 use super::orientations;
 use super::positions;
 use super::resample::resampled;
@@ -206,8 +206,20 @@ impl Run<'_> {
         let near = self.neighbourhoods(&output.graph)?;
         let found = self.found(output, &near, 1, self.options.iterations);
         report.tell(&output.graph, &found, self.area);
+        report.full_energy_per_sample = self.full_energy(output, &near, &found) / found.len() as f64;
         report.finish(&output.graph, near.mean());
         Ok(report)
+    }
+
+    /// The energy by the whole measure of what was perhaps made without a part of it.
+    fn full_energy(&self, output: &Output, near: &Neighbourhoods, found: &[Found]) -> f64 {
+        if self.options.without == Without::default() {
+            return super::level::energy(&output.graph, found, self.area);
+        }
+        let options = &Options { without: Without::default(), ..self.options.clone() };
+        let run = Run { options, ..*self };
+        let found = run.found(output, near, options.passes[0], options.iterations + 1);
+        super::level::energy(&output.graph, &found, self.area)
     }
 
     fn neighbourhoods(&self, graph: &Graph) -> Result<Neighbourhoods, SampleError> {
