@@ -26,12 +26,7 @@ const SHORTEST_CHORD: f64 = 1e-3;
 
 /// The polygons that the pen of `style` covers along `path`, all counter-clockwise and within `tolerance` of
 /// the exact stroke when united; `None` if they have more than `limit` vertices.
-pub fn stroked(
-    path: &BezPath,
-    style: &Stroke,
-    tolerance: f64,
-    limit: usize,
-) -> Option<Vec<Vec<DVec2>>> {
+pub fn stroked(path: &BezPath, style: &Stroke, tolerance: f64, limit: usize) -> Option<Vec<Vec<DVec2>>> {
     let radius = style.width / 2.0;
     let mut pen = Pen {
         style,
