@@ -44,6 +44,23 @@ pub struct FlatMaking {
     pub picture: PictureOptions,
 }
 
+/// The thickness of a solid when none is asked for, in millimetres: five layers or more of most printers.
+const DEFAULT_THICKNESS_MM: f64 = 2.0;
+
+impl Default for FlatMaking {
+    fn default() -> Self {
+        Self {
+            thickness_mm: DEFAULT_THICKNESS_MM,
+            tolerances: Tolerances::default(),
+            enforce: false,
+            material: None,
+            print: PrintOptions::default(),
+            laser: LaserOptions::default(),
+            picture: PictureOptions::default(),
+        }
+    }
+}
+
 impl FlatMaking {
     pub(super) fn check(&self, outputs: &[Output]) -> Result<(), JobError> {
         if self.enforce && self.tolerances.min_feature_mm() == 0.0 && self.tolerances.min_gap_mm() == 0.0 {
