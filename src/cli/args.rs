@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 
 use super::build::BuildArguments;
+use super::fill::FillArguments;
 use super::laser::LaserArgs;
 use super::make::MakeArgs;
 use super::picture::PictureArgs;
@@ -33,6 +34,9 @@ pub(super) enum Command {
     /// Synthesize a rectangle, in both directions, and write it as SVG, DXF, STL, 3MF, OBJ or PNG
     #[command(after_help = RECT_HELP)]
     Rect(Box<RectArguments>),
+    /// Fill an area with a pattern of curves and elements, as rectangles, drawn shapes with holes and rings
+    #[command(after_help = super::fill::HELP)]
+    Fill(Box<FillArguments>),
     /// Synthesize a band on a model (STL, 3MF, OBJ): a part that fits it, standing out from it, or carved out of it
     #[command(after_help = SURFACE_HELP)]
     Surface(Box<SurfaceArguments>),

@@ -6,7 +6,7 @@ use super::args::ExtrudeArguments;
 use super::laser::say_cuts;
 use super::progress::Progress;
 use super::run::{CliError, output, print_json, refuse_json_beside, say_bridges, say_notes, say_quantities};
-use crate::job::{ExtrudeBridges, ExtrudeMaking, ExtrudeReport, Format, Output, extrude};
+use crate::job::{ExtrudeBridges, ExtrudeReport, FlatMaking, Format, Output, extrude};
 use crate::planar::Tolerances;
 
 pub(super) fn run(arguments: &ExtrudeArguments) -> Result<ExitCode, CliError> {
@@ -27,11 +27,9 @@ pub(super) fn run(arguments: &ExtrudeArguments) -> Result<ExitCode, CliError> {
 }
 
 /// How the drawing is to be made, and its bridges.
-pub(super) fn making(
-    arguments: &ExtrudeArguments,
-) -> Result<(ExtrudeMaking, Option<ExtrudeBridges>), CliError> {
+pub(super) fn making(arguments: &ExtrudeArguments) -> Result<(FlatMaking, Option<ExtrudeBridges>), CliError> {
     let made = arguments.part.make.made(&arguments.part.tolerances)?;
-    let making = ExtrudeMaking {
+    let making = FlatMaking {
         thickness_mm: made.thickness_mm,
         tolerances: Tolerances::new(made.chord_mm, made.min_feature_mm, made.min_gap_mm)?,
         enforce: arguments.part.make.enforce,

@@ -16,6 +16,7 @@ macro_rules! say {
 mod args;
 mod build;
 mod extrude;
+mod fill;
 mod interrupt;
 mod laser;
 mod make;

@@ -75,6 +75,8 @@ fn words(stage: Stage) -> &'static str {
         Stage::Read => "reading the exemplar",
         Stage::Slice => "cutting it into pieces",
         Stage::Solve => "searching for a sequence",
+        Stage::Synthesize => "synthesizing",
+        Stage::Complete => "joining and opening",
         Stage::Fit => "fitting the pieces",
         Stage::Map => "mapping along the curve",
         Stage::Bridge => "laying bridges",

@@ -11,7 +11,7 @@ use super::args::{
 use super::laser::say_cuts;
 use super::progress::Progress;
 use super::scene::SceneError;
-use super::{build, extrude, rect, schema, shell, surface, verify};
+use super::{build, extrude, fill, rect, schema, shell, surface, verify};
 use crate::analysis::{Analysis, AnalysisError};
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
 use crate::export;
@@ -78,6 +78,7 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, CliError> {
     match arguments.command {
         Command::Band(band) => run_band(&band),
         Command::Rect(arguments) => rect::run_rect(&arguments),
+        Command::Fill(arguments) => fill::run(&arguments),
         Command::Surface(arguments) => surface::run(&arguments),
         Command::Analyze(analyze) => run_analyze(&analyze),
         Command::Extrude(arguments) => extrude::run(&arguments),

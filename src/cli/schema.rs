@@ -12,7 +12,7 @@ use serde_json::{Map, Value, json};
 use super::args::Arguments;
 use super::preset::name_of;
 use crate::analysis::Analysis;
-use crate::job::{BandReport, ExtrudeReport, RectReport, SceneReport, View, Workshop};
+use crate::job::{BandReport, ExtrudeReport, FillReport, RectReport, SceneReport, View, Workshop};
 use crate::verify::{CertificateReport, CutReport, MeshReport, SvgReport};
 
 /// The schema, as a JSON text.
@@ -26,6 +26,7 @@ pub(super) fn schema() -> String {
     let reports = json!({
         "band": report::<BandReport>(generator),
         "rect": report::<RectReport>(generator),
+        "fill": report::<FillReport>(generator),
         "extrude": report::<ExtrudeReport>(generator),
         "build": report::<SceneReport>(generator),
         "analyze": report::<Analysis>(generator),
@@ -182,7 +183,7 @@ mod tests {
     #[test]
     fn reports_are_described_as_they_are_written() {
         let schema: Value = serde_json::from_str(&schema()).unwrap();
-        for report in ["band", "rect", "extrude"] {
+        for report in ["band", "rect", "fill", "extrude"] {
             let properties = &schema["reports"][report]["properties"];
             assert_eq!(properties["components"]["type"], "integer", "{report}");
             assert!(properties["holes"]["description"].is_string(), "{report}");

@@ -12,6 +12,37 @@ pub(super) fn length(text: &str) -> Result<f64, String> {
     parse_length_mm(text).map_err(|e| e.to_string())
 }
 
+/// Several lengths in millimetres. (A name of its own, as the parser of arguments gives lists a meaning.)
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Lengths(pub(super) Vec<f64>);
+
+/// `12,10,8mm`: a unit at the end is that of all that have none.
+pub(super) fn lengths(text: &str) -> Result<Lengths, String> {
+    let unit = &text[text.trim_end_matches(|c: char| c.is_ascii_alphabetic()).len()..];
+    let is_bare = |part: &str| part.ends_with(|c: char| c.is_ascii_digit() || c == '.');
+    let one = |part: &str| match part.trim() {
+        part if is_bare(part) => length(&format!("{part}{unit}")),
+        part => length(part),
+    };
+    let lengths = text.split(',').map(one).collect::<Result<_, _>>();
+    lengths
+        .map(Lengths)
+        .map_err(|reason| format!("{reason}; write lengths with commas between them, such as 12,10,8mm"))
+}
+
+/// Two numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Pair<T>(pub(super) [T; 2]);
+
+/// `5,2`.
+pub(super) fn pair<T: std::str::FromStr>(text: &str) -> Result<Pair<T>, String> {
+    let numbers =
+        text.split_once(',').and_then(|(a, b)| Some([a.trim().parse().ok()?, b.trim().parse().ok()?]));
+    numbers.map(Pair).ok_or_else(|| {
+        format!("'{text}' is no pair; write two numbers with a comma between them, such as 5,2")
+    })
+}
+
 /// A size of memory in bytes: `512MB`, `2GB`, `2GiB`.
 pub(super) fn memory(text: &str) -> Result<usize, String> {
     let wanted = "use a number of megabytes or gigabytes, as 512MB or 2GB";
@@ -167,6 +198,20 @@ mod tests {
         assert_eq!(bed("220x210.5x250mm"), Ok(Bed { height_mm: Some(250.0), ..two }));
         for wrong in ["", "220", "220x", "1x2x3x4", "0x220", "-5x220mm", "axb", "220x220furlong", "nanx5"] {
             assert!(bed(wrong).unwrap_err().contains("as 220x220mm"), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn lists_of_lengths_share_their_last_unit() {
+        assert_eq!(lengths("12,10, 8mm"), Ok(Lengths(vec![12.0, 10.0, 8.0])));
+        assert_eq!(lengths("1.2,1cm"), Ok(Lengths(vec![12.0, 10.0])));
+        assert_eq!(lengths("1cm,8mm"), Ok(Lengths(vec![10.0, 8.0])));
+        for wrong in ["", "12,,8mm", "12;8", "a,b"] {
+            assert!(lengths(wrong).unwrap_err().contains("such as 12,10,8mm"), "{wrong}");
+        }
+        assert_eq!(pair::<usize>("5, 2"), Ok(Pair([5, 2])));
+        for wrong in ["", "5", "5,", "5,2,1", "a,b"] {
+            assert!(pair::<usize>(wrong).unwrap_err().contains("such as 5,2"), "{wrong}");
         }
     }
 

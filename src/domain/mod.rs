@@ -15,7 +15,7 @@
 //! which are surfaces of triangles ([`Mesh`]), lie curves ([`MeshCurve`]) that give such a curve, with the outside of
 //! the model as its front.
 //!
-//! Excluded: reading files (a [`CurveSpec`] only names one), and the minimum feature after
+//! Excluded: reading files (a [`CurveSpec`] or a [`FillDomain`] only names one), and the minimum feature after
 //! the map, which is measured where the part is made.
 
 mod arc;
@@ -24,6 +24,7 @@ mod chain;
 mod crossing;
 mod curve;
 mod error;
+mod fill_spec;
 mod length;
 mod path;
 mod rounding;
@@ -39,6 +40,7 @@ mod trace;
 pub use band::BandMap;
 pub use curve::{Frame, PlanarCurve};
 pub use error::DomainError;
+pub use fill_spec::{FillDomain, FillDomainError};
 pub use length::{LengthError, parse_length_mm};
 pub use size::{RectSize, RectSizeError};
 pub use space::{Relief, Roll, RollError, SpaceCurve, SpaceError, SpaceFrame, SpaceMap, Twist, TwistError};

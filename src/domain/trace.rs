@@ -35,6 +35,16 @@ impl BandMap {
         mapped
     }
 
+    /// Maps an open line, whose vertices are in (u, v) with u unwrapped, within `chord_mm` likewise.
+    pub fn map_line(&self, points: &[DVec2], chord_mm: f64) -> Vec<DVec2> {
+        let mut mapped = Vec::with_capacity(2 * points.len());
+        for pair in points.windows(2) {
+            self.trace(pair[0], pair[1], chord_mm, &mut |_, point| mapped.push(point));
+        }
+        mapped.extend(points.last().map(|last| self.map(last.x, last.y)));
+        mapped
+    }
+
     /// Calls `put` with (u, v) and the place of points along the straight edge from `from` to `to`: `from`
     /// itself, then what the chord error asks for; not `to`.
     pub(super) fn trace(&self, from: DVec2, to: DVec2, chord_mm: f64, put: &mut impl FnMut(DVec2, DVec2)) {

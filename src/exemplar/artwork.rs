@@ -39,6 +39,17 @@ pub(super) struct Shape {
     /// From user units to millimetres with y up.
     pub(super) to_mm: Affine,
     pub(super) brush: Brush,
+    /// The number of the innermost `g` or `use` around it.
+    pub(super) holder: Option<usize>,
+}
+
+/// A `g` or a `use` as it is drawn: one for each time.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Holder {
+    /// The number of the next one around, which is smaller than its own.
+    pub(super) around: Option<usize>,
+    /// Whether it is a layer of Inkscape.
+    pub(super) is_layer: bool,
 }
 
 /// A shape, or items of which only the part inside a clip is ink.
@@ -81,6 +92,7 @@ impl<S> Clip<S> {
 #[derive(Debug, Clone)]
 pub(super) struct Artwork {
     pub(super) items: Vec<Item<Shape>>,
+    pub(super) holders: Vec<Holder>,
     pub(super) page_mm: (f64, f64),
     pub(super) notes: Vec<String>,
 }
@@ -120,16 +132,18 @@ impl Artwork {
             labels: &labels,
             fallback: source.place(source.root()),
             kept: HashMap::new(),
+            holders: Vec::new(),
             paints: Paints::default(),
         };
         let at = Position {
             transform: page_to_mm(f64::from(size.height())),
             place: None,
             anchor: None,
+            holder: None,
             counted: true,
         };
         let items = collector.group(tree.root(), &at)?;
-        let (kept, paints) = (collector.kept, collector.paints);
+        let Collector { kept, paints, holders, .. } = collector;
         compare(&scan.expected, &kept)?;
         if scan.expected.is_empty() {
             return Err(ExemplarFault::NothingDrawn);
@@ -144,7 +158,7 @@ impl Artwork {
             return Err(ExemplarFault::NoInk);
         }
         let page_mm = (f64::from(size.width()) * MM_PER_PX, f64::from(size.height()) * MM_PER_PX);
-        Ok(Self { items, page_mm, notes })
+        Ok(Self { items, holders, page_mm, notes })
     }
 }
 
@@ -176,6 +190,8 @@ struct Position<'t> {
     place: Option<&'t Place>,
     /// The label of the outermost `use` around.
     anchor: Option<&'t str>,
+    /// The number of the innermost `g` or `use` around.
+    holder: Option<usize>,
     /// False inside clip paths, whose shapes are no ink.
     counted: bool,
 }
@@ -184,6 +200,7 @@ struct Collector<'t> {
     labels: &'t Labels,
     fallback: Place,
     kept: HashMap<String, usize>,
+    holders: Vec<Holder>,
     paints: Paints,
 }
 
@@ -195,6 +212,10 @@ impl<'t> Collector<'t> {
         at.place = self.labels.place(id).or(outer.place);
         if at.anchor.is_none() && self.labels.is_use(id) {
             at.anchor = Some(id);
+        }
+        if self.labels.place(id).is_some() {
+            at.holder = Some(self.holders.len());
+            self.holders.push(Holder { around: outer.holder, is_layer: self.labels.is_layer(id) });
         }
         let mut items = Vec::new();
         for node in group.children() {
@@ -266,7 +287,7 @@ impl<'t> Collector<'t> {
         let place = self.place(path.id(), at);
         let shape = |brush| {
             let path = bez_path(path.data());
-            Item::Shape(Shape { place: place.clone(), path, to_mm: at.transform, brush })
+            Item::Shape(Shape { place: place.clone(), path, to_mm: at.transform, brush, holder: at.holder })
         };
         let mut inked =
             |paint, opacity: usvg::Opacity, what| self.is_ink(paint, opacity.get(), what, &place, at);
@@ -279,10 +300,7 @@ impl<'t> Collector<'t> {
             _ => None,
         };
         if let Some(fill) = fill {
-            let rule = match fill.rule() {
-                usvg::FillRule::NonZero => FillRule::NonZero,
-                usvg::FillRule::EvenOdd => FillRule::EvenOdd,
-            };
+            let rule = fill_rule(fill.rule());
             let alone = stroke.is_none();
             items.push(shape(if alone { Brush::Fill(rule) } else { Brush::FillUnderStroke(rule) }));
         }
@@ -345,6 +363,13 @@ impl Paints {
 
 fn partial(opacity: f32) -> bool {
     opacity > OPACITY_EPSILON && opacity < 1.0 - OPACITY_EPSILON
+}
+
+pub(super) fn fill_rule(rule: usvg::FillRule) -> FillRule {
+    match rule {
+        usvg::FillRule::NonZero => FillRule::NonZero,
+        usvg::FillRule::EvenOdd => FillRule::EvenOdd,
+    }
 }
 
 pub(super) fn affine(t: usvg::Transform) -> Affine {

@@ -9,12 +9,13 @@ use kurbo::{Affine, BezPath, PathEl};
 use roxmltree::Node as XmlNode;
 use usvg::{Group, Node};
 
-use super::artwork::{affine, bez_path, library_tree, page_to_mm};
+use super::artwork::{affine, bez_path, fill_rule, library_tree, page_to_mm};
 use super::check::Checker;
-use super::error::{ExemplarError, ExemplarFault};
+use super::error::{ExemplarError, ExemplarFault, Place};
 use super::limits::Limits;
 use super::scan::{Strictness, scan};
 use super::source::{SHAPES, Source, label, svg_tag};
+use crate::planar::FillRule;
 
 /// The ids that an error lists at most.
 const LISTED: usize = 12;
@@ -46,6 +47,25 @@ pub fn path_from_svg(
 }
 
 fn parse(bytes: &[u8], id: Option<&str>, limits: &Limits) -> Result<BezPath, ExemplarFault> {
+    let Named { path, place, .. } = named(bytes, id, limits)?;
+    let count = path.elements().iter().filter(|el| matches!(el, PathEl::MoveTo(_))).count();
+    if count > 1 {
+        return Err(ExemplarFault::Subpaths { place, count });
+    }
+    Ok(path)
+}
+
+/// One path of a drawing.
+pub(super) struct Named {
+    pub(super) place: Place,
+    /// In millimetres, y up.
+    pub(super) path: BezPath,
+    /// By which rule it is filled, if it has a fill.
+    pub(super) rule: Option<FillRule>,
+}
+
+/// The path with this `id`, or the only one.
+pub(super) fn named(bytes: &[u8], id: Option<&str>, limits: &Limits) -> Result<Named, ExemplarFault> {
     let source = Source::parse(bytes, limits)?;
     scan(&source, limits, Strictness::Structure)?;
     let node = choose(&source, id)?;
@@ -57,14 +77,11 @@ fn parse(bytes: &[u8], id: Option<&str>, limits: &Limits) -> Result<BezPath, Exe
     }
     let (tree, _) = library_tree(&source, limits)?;
     let to_mm = page_to_mm(f64::from(tree.size().height()));
-    let Some(path) = find(tree.root(), to_mm, &label(node)) else {
+    let Some((found, to_mm)) = find(tree.root(), to_mm, &label(node)) else {
         return Err(ExemplarFault::NotInDrawing { place });
     };
-    let count = path.elements().iter().filter(|el| matches!(el, PathEl::MoveTo(_))).count();
-    if count > 1 {
-        return Err(ExemplarFault::Subpaths { place, count });
-    }
-    Ok(path)
+    let rule = found.fill().map(|fill| fill_rule(fill.rule()));
+    Ok(Named { place, path: to_mm * bez_path(found.data()), rule })
 }
 
 fn choose<'a, 'i>(source: &'a Source<'i>, id: Option<&str>) -> Result<XmlNode<'a, 'i>, ExemplarFault> {
@@ -100,11 +117,11 @@ fn defined(node: XmlNode) -> bool {
     node.ancestors().any(|n| svg_tag(n).is_some_and(|tag| DEFINING.contains(&tag)))
 }
 
-fn find(group: &Group, outer: Affine, label: &str) -> Option<BezPath> {
+fn find<'t>(group: &'t Group, outer: Affine, label: &str) -> Option<(&'t usvg::Path, Affine)> {
     let transform = outer * affine(group.transform());
     group.children().iter().find_map(|node| match node {
         Node::Group(inner) => find(inner, transform, label),
-        Node::Path(path) if path.id() == label => Some(transform * bez_path(path.data())),
+        Node::Path(path) if path.id() == label => Some((path, transform)),
         _ => None,
     })
 }

@@ -334,6 +334,14 @@ pub enum ExemplarFault {
         /// Where.
         place: Place,
     },
+    /// The path has an open subpath where the inside of one is wanted.
+    #[error(
+        "{place} is open, and the inside of a closed path is wanted; close it (z at the end of its data)"
+    )]
+    OpenArea {
+        /// Where.
+        place: Place,
+    },
     /// The path has more than one piece.
     #[error("{place} has {count} subpaths; one connected curve is wanted (in Inkscape: Path, Break Apart)")]
     Subpaths {

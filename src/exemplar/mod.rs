@@ -1,4 +1,4 @@
-//! SVG in, one clean [`Region`] out.
+//! SVG in, one clean [`Region`] out; or, for the second engine, curves and elements ([`Linework`]).
 //!
 //! An exemplar is what a maker would cut: every visible fill and stroke of the drawing, united. Whatever the
 //! drawing holds that ink cannot represent is an error that names the element and says what would work;
@@ -18,12 +18,14 @@
 //! chord that is more than flattening may add from a radius of 18 mm on (0.005 mm). It moves an outline by less
 //! than a machine can, and no count.
 
+mod area;
 mod artwork;
 mod check;
 mod curve;
 mod error;
 mod heights;
 mod limits;
+mod linework;
 mod outline;
 mod scan;
 mod source;
@@ -42,10 +44,12 @@ use self::scan::Strictness;
 use self::source::Source;
 use crate::planar::{Region, Tolerances};
 
+pub use self::area::{area_from_svg, read_area};
 pub use self::curve::{path_from_svg, read_path};
 pub use self::error::{ExemplarError, ExemplarFault, Place};
 pub use self::heights::{Heights, HeightsError, read_heights};
 pub use self::limits::Limits;
+pub use self::linework::{Line, Linework};
 
 /// How to read an exemplar.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -34,25 +34,37 @@ pub(super) fn region(
     chord_mm: f64,
     limits: &Limits,
 ) -> Result<Region, ExemplarFault> {
-    let mut flattener = Flattener { scale, chord_mm, limits, vertices: 0, dashes: 0.0, extent_mm: 0.0 };
-    let items: Vec<Item<Flat>> = artwork
-        .items
-        .iter()
-        .map(|item| item.try_map(&mut |shape| flattener.flatten(shape)))
-        .collect::<Result<_, _>>()?;
-    if items.is_empty() {
+    if artwork.items.is_empty() {
         return Err(ExemplarFault::NoInk);
     }
-    let grid = Grid::for_extent(flattener.extent_mm)?;
-    let union = Filler { grid }.union(&items)?;
-    let region = Region::fill(grid, &union, FillRule::Positive).without_cracks();
+    let region = regions(&[&artwork.items], scale, chord_mm, limits)?.swap_remove(0);
     let Some((low, high)) = region.bounds_mm() else { return Err(ExemplarFault::NoInk) };
     check_precision(&artwork.items, scale, (high - low).max_element())?;
     Ok(region)
 }
 
+/// The region of each of the `drawings`, on one grid.
+pub(super) fn regions(
+    drawings: &[&[Item<Shape>]],
+    scale: f64,
+    chord_mm: f64,
+    limits: &Limits,
+) -> Result<Vec<Region>, ExemplarFault> {
+    let mut flattener = Flattener { scale, chord_mm, limits, vertices: 0, dashes: 0.0, extent_mm: 0.0 };
+    let drawings: Vec<Vec<Item<Flat>>> = drawings
+        .iter()
+        .map(|items| items.iter().map(|item| item.try_map(&mut |shape| flattener.flatten(shape))).collect())
+        .collect::<Result<_, _>>()?;
+    let grid = Grid::for_extent(flattener.extent_mm)?;
+    let filler = Filler { grid };
+    drawings
+        .iter()
+        .map(|items| Ok(Region::fill(grid, &filler.union(items)?, FillRule::Positive).without_cracks()))
+        .collect()
+}
+
 /// The SVG library's coordinates are `f32`: a small drawing far from its origin has lost its shape.
-fn check_precision(items: &[Item<Shape>], scale: f64, size_mm: f64) -> Result<(), ExemplarFault> {
+pub(super) fn check_precision(items: &[Item<Shape>], scale: f64, size_mm: f64) -> Result<(), ExemplarFault> {
     for item in items {
         match item {
             Item::Shape(shape) => {
@@ -75,7 +87,7 @@ fn check_precision(items: &[Item<Shape>], scale: f64, size_mm: f64) -> Result<()
 }
 
 /// The most by which an affine map lengthens.
-fn largest_scale(affine: Affine) -> f64 {
+pub(super) fn largest_scale(affine: Affine) -> f64 {
     let [a, b, c, d, _, _] = affine.as_coeffs();
     let (x2, y2) = (a * a + b * b, c * c + d * d);
     ((x2 + y2 + (x2 - y2).hypot(2.0 * (a * c + b * d))) / 2.0).sqrt()
@@ -96,7 +108,9 @@ impl Flattener<'_> {
         let bounds = to_mm.transform_rect_bbox(shape.path.control_box());
         self.check_range(&shape.place, [bounds.x0, bounds.y0, bounds.x1, bounds.y1])?;
         let (polygons, rule) = match &shape.brush {
-            Brush::Fill(rule) | Brush::FillUnderStroke(rule) => (self.flat(&(to_mm * &shape.path)), *rule),
+            Brush::Fill(rule) | Brush::FillUnderStroke(rule) => {
+                (flat(&(to_mm * &shape.path), self.chord_mm / 2.0), *rule)
+            }
             Brush::Stroke(style) => (self.stroked(shape, style, to_mm)?, FillRule::NonZero),
         };
         self.vertices += polygons.iter().map(Vec::len).sum::<usize>();
@@ -124,19 +138,6 @@ impl Flattener<'_> {
             Some(value) => Err(ExemplarFault::Coordinate { place: place.clone(), value, limit, unit: "mm" }),
             None => Ok(()),
         }
-    }
-
-    fn flat(&self, path: &BezPath) -> Vec<Vec<DVec2>> {
-        let mut polygons: Vec<Vec<DVec2>> = Vec::new();
-        kurbo::flatten(path, self.chord_mm / 2.0, |el| match el {
-            PathEl::MoveTo(p) => polygons.push(vec![DVec2::new(p.x, p.y)]),
-            PathEl::LineTo(p) => {
-                polygons.last_mut().expect("a path begins with a move").push(DVec2::new(p.x, p.y))
-            }
-            PathEl::ClosePath => {}
-            PathEl::QuadTo(..) | PathEl::CurveTo(..) => unreachable!("flattening leaves lines only"),
-        });
-        polygons
     }
 
     /// What a stroke covers. It is made in the shape's own units: what a transform does to a shape, it does to
@@ -188,6 +189,20 @@ impl Flattener<'_> {
         }
         Ok(kurbo::dash(shape.path.iter(), style.dash_offset, &pattern).collect())
     }
+}
+
+/// The vertices of each subpath, within `tolerance_mm`.
+pub(super) fn flat(path: &BezPath, tolerance_mm: f64) -> Vec<Vec<DVec2>> {
+    let mut polygons: Vec<Vec<DVec2>> = Vec::new();
+    kurbo::flatten(path, tolerance_mm, |el| match el {
+        PathEl::MoveTo(p) => polygons.push(vec![DVec2::new(p.x, p.y)]),
+        PathEl::LineTo(p) => {
+            polygons.last_mut().expect("a path begins with a move").push(DVec2::new(p.x, p.y))
+        }
+        PathEl::ClosePath => {}
+        PathEl::QuadTo(..) | PathEl::CurveTo(..) => unreachable!("flattening leaves lines only"),
+    });
+    polygons
 }
 
 struct Filler {

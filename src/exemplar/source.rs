@@ -15,6 +15,7 @@ use super::limits::Limits;
 
 pub(super) const SVG_NAMESPACE: &str = "http://www.w3.org/2000/svg";
 const XLINK_NAMESPACE: &str = "http://www.w3.org/1999/xlink";
+const INKSCAPE_NAMESPACE: &str = "http://www.inkscape.org/namespaces/inkscape";
 
 /// Tags that draw by themselves.
 pub(super) const SHAPES: [&str; 7] = ["path", "rect", "circle", "ellipse", "line", "polyline", "polygon"];
@@ -150,7 +151,11 @@ impl<'a> Source<'a> {
                     label
                 }
             };
-            labels.entry(label).or_insert((self.place(node), tag == "use"));
+            labels.entry(label).or_insert(Labelled {
+                place: self.place(node),
+                is_use: tag == "use",
+                is_layer: node.attribute((INKSCAPE_NAMESPACE, "groupmode")) == Some("layer"),
+            });
         }
         text.push_str(&self.text[copied..]);
         (text, Labels { labels })
@@ -168,18 +173,29 @@ pub(super) fn label(node: Node) -> String {
 
 /// The elements behind the ids of a labelled document.
 pub(super) struct Labels {
-    labels: HashMap<String, (Place, bool)>,
+    labels: HashMap<String, Labelled>,
+}
+
+struct Labelled {
+    place: Place,
+    is_use: bool,
+    is_layer: bool,
 }
 
 impl Labels {
     /// The element with this id.
     pub(super) fn place(&self, id: &str) -> Option<&Place> {
-        self.labels.get(id).map(|(place, _)| place)
+        self.labels.get(id).map(|element| &element.place)
     }
 
     /// Whether the element with this id is a `use`.
     pub(super) fn is_use(&self, id: &str) -> bool {
-        self.labels.get(id).is_some_and(|&(_, is_use)| is_use)
+        self.labels.get(id).is_some_and(|element| element.is_use)
+    }
+
+    /// Whether the element with this id is a layer of Inkscape, which sorts a drawing and groups nothing.
+    pub(super) fn is_layer(&self, id: &str) -> bool {
+        self.labels.get(id).is_some_and(|element| element.is_layer)
     }
 }
 

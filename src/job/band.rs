@@ -1,12 +1,9 @@
 //! A band along a curve: from the exemplar to a part that has the planned topology.
 
-use std::path::Path;
-
 use glam::DVec2;
 
 use super::bridging::{self, BridgesReport};
 use super::builder::BandJob;
-use super::certificate::sha256;
 use super::choice::Choice;
 use super::cut::{Cut, read_exemplar, slice};
 use super::describe::describe;
@@ -336,10 +333,9 @@ pub(super) fn read_curve(
     round_mm: Option<f64>,
     in_space: Option<&SpaceCurve>,
 ) -> Result<(PlanarCurve, Option<InputReport>), JobError> {
-    let read = |file: &Path| InputReport { file: file.display().to_string(), sha256: sha256_of(file) };
     if let Some(curve) = in_space {
         let input = match spec {
-            CurveSpec::Points { file } | CurveSpec::Model { file } => Some(read(file)),
+            CurveSpec::Points { file } | CurveSpec::Model { file } => Some(InputReport::of(file)),
             _ => None,
         };
         return Ok((space::flat(curve)?, input));
@@ -353,7 +349,7 @@ pub(super) fn read_curve(
                 Some(radius) => PlanarCurve::from_bez_path_rounded(&path, radius)?,
                 None => PlanarCurve::from_bez_path(&path)?,
             };
-            (curve, Some(read(file)))
+            (curve, Some(InputReport::of(file)))
         }
         CurveSpec::Ring { .. }
         | CurveSpec::Helix { .. }
@@ -362,10 +358,6 @@ pub(super) fn read_curve(
             unreachable!("a curve in space was read before")
         }
     })
-}
-
-fn sha256_of(file: &Path) -> String {
-    sha256(&std::fs::read(file).unwrap_or_default())
 }
 
 fn make_part(

@@ -6,7 +6,7 @@ use super::band::Band;
 use super::blind;
 use super::certificate::{FileDigest, sha256};
 use super::error::JobError;
-use super::extrude::name;
+use super::flat::name;
 use super::judged::{Drawn, shown};
 use super::laser::Cutting;
 use super::making::Quantities;

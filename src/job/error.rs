@@ -13,6 +13,7 @@ use crate::fit::FitError;
 use crate::pieces::CostWeightsError;
 use crate::planar::TolerancesError;
 use crate::reeb::SlicingError;
+use crate::samples::{CompleteError, SampleError};
 use crate::verify::{Mismatch, TilingFault, VerifyError};
 
 /// Why a job ended without its files.
@@ -52,6 +53,12 @@ pub enum JobError {
         /// What would work.
         wanted: String,
     },
+    /// No pattern can be synthesized.
+    #[error(transparent)]
+    Samples(#[from] SampleError),
+    /// A pattern cannot be completed.
+    #[error("{0}. Nothing was written")]
+    Complete(#[from] CompleteError),
     /// No sequence of pieces meets the constraints.
     #[error("{0}")]
     Refused(String),
@@ -174,6 +181,7 @@ impl JobError {
             | Self::Surface(_)
             | Self::Size(_)
             | Self::Tolerances(_)
+            | Self::Samples(_)
             | Self::Weights(_)
             | Self::Option { .. }
             | Self::Sheet(_)
@@ -182,7 +190,11 @@ impl JobError {
             Self::Slicing(SlicingError::TooThin { .. }) => 3,
             Self::Slicing(_) => 2,
             Self::Bridge(BridgeError::Width { .. }) => 2,
-            Self::Refused(_) | Self::SearchTooLarge { .. } | Self::Bridge(_) | Self::Kerf(_) => 3,
+            Self::Refused(_)
+            | Self::Complete(_)
+            | Self::SearchTooLarge { .. }
+            | Self::Bridge(_)
+            | Self::Kerf(_) => 3,
             Self::Enforce(EnforceError::Width { .. }) => 2,
             Self::Enforce(_) => 3,
             Self::Fabricate(

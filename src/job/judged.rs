@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use super::band::{Band, FINER_CHORDS};
 use super::choice::Choice;
 use super::error::JobError;
-use super::extrude::{file_name, name};
+use super::flat::{file_name, name};
 use super::laser::Cutting;
 use super::making;
 use super::output::{Format, Output};

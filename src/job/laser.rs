@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use super::engrave::Engraving;
 use super::error::{JobError, OURS};
-use super::extrude::name;
+use super::flat::name;
 use super::making;
 use super::output::{Format, Output, Pending};
 use super::picture::PictureOptions;

@@ -1,4 +1,4 @@
-//! Whole jobs: a band along a curve, a rectangle, a solid from any SVG.
+//! Whole jobs: a band along a curve, a rectangle, an area that is filled, a solid from any SVG.
 //!
 //! A builder collects options, `build()` checks them by name, `run()` computes, and the result encodes itself
 //! as files that are read again and verified before they have their names. All rooms meet here, and nothing
@@ -35,6 +35,8 @@ mod drape;
 mod engrave;
 mod error;
 mod extrude;
+mod fill;
+mod flat;
 mod joined;
 mod json;
 mod judged;
@@ -80,7 +82,12 @@ pub use choice::{Choice, Chosen, DEFAULT_TEMPERATURE, choose};
 pub use cut::READ_SHARE;
 pub use drape::{Drape, DrapeError};
 pub use error::{JobError, OutlineFault};
-pub use extrude::{ExtrudeBridges, ExtrudeMaking, ExtrudeReport, extrude};
+pub use extrude::{ExtrudeBridges, ExtrudeReport, extrude};
+pub use fill::{
+    ChangeReport, CloneSpec, Density, Fill, FillBuilder, FillJob, FillReport, LevelReport, SampleBorder,
+    SampleOptions, SampleStart, SampleWithout, UnmatchedPrice,
+};
+pub use flat::FlatMaking;
 pub use laser::{LaserFile, LaserOptions, LaserReport};
 pub use making::{EnforcedReport, Quantities};
 pub use output::{Format, Output, Target};

@@ -4,7 +4,7 @@
 //! [`Clock::both`](super::stage::Clock::both)). Excluded: how a solid is made ([`super::print`]), and the names of files.
 
 use super::error::{JobError, OURS};
-use super::extrude::name;
+use super::flat::name;
 use super::output::{Format, Output};
 use super::print::mesh;
 use super::stage::{Clock, Stage};

@@ -1,10 +1,12 @@
 //! The report of a band, as JSON.
 
+use std::path::Path;
+
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::bridging::BridgesReport;
-use super::certificate::Certificate;
+use super::certificate::{Certificate, sha256};
 use super::json;
 use super::laser::LaserReport;
 use super::making::{EnforcedReport, Quantities};
@@ -20,6 +22,13 @@ pub struct InputReport {
     pub file: String,
     /// SHA-256 of its bytes, in hexadecimal.
     pub sha256: String,
+}
+
+impl InputReport {
+    /// That of a file, which was read before.
+    pub(super) fn of(file: &Path) -> Self {
+        Self { file: file.display().to_string(), sha256: sha256(&std::fs::read(file).unwrap_or_default()) }
+    }
 }
 
 /// The seams of a band.

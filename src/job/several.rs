@@ -2,7 +2,7 @@
 
 use super::band::Band;
 use super::error::JobError;
-use super::extrude::name;
+use super::flat::name;
 use super::output::{Output, Pending, Target, persist};
 use super::report::BandReport;
 use super::stage::Stage;

@@ -13,6 +13,10 @@ pub enum Stage {
     Slice,
     /// The search for a sequence.
     Solve,
+    /// Samples of the output, searched and assigned in turn.
+    Synthesize,
+    /// Curves through samples, joined and opened.
+    Complete,
     /// Offsets and warps.
     Fit,
     /// The map along the curve.
@@ -35,10 +39,12 @@ pub enum Stage {
 
 impl Stage {
     /// All stages.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 14] = [
         Self::Read,
         Self::Slice,
         Self::Solve,
+        Self::Synthesize,
+        Self::Complete,
         Self::Fit,
         Self::Map,
         Self::Bridge,
@@ -56,6 +62,8 @@ impl Stage {
             Self::Read => "read",
             Self::Slice => "slice",
             Self::Solve => "solve",
+            Self::Synthesize => "synthesize",
+            Self::Complete => "complete",
             Self::Fit => "fit",
             Self::Map => "map",
             Self::Bridge => "bridge",

@@ -11,7 +11,8 @@ use crate::export;
 use crate::fabricate::{self, Solid};
 use crate::job::builder::BandJob;
 use crate::job::error::JobError;
-use crate::job::extrude::{self, ExtrudeBridges, ExtrudeMaking};
+use crate::job::extrude::{self, ExtrudeBridges};
+use crate::job::flat::FlatMaking;
 use crate::job::output::{Format, Output};
 use crate::job::rect_builder::RectJob;
 use crate::job::stage::Stage;
@@ -34,7 +35,7 @@ pub enum Making {
         /// The drawing.
         file: PathBuf,
         /// How it is made.
-        making: Box<ExtrudeMaking>,
+        making: Box<FlatMaking>,
         /// Bridges that are laid before.
         bridges: Option<ExtrudeBridges>,
     },

@@ -1,0 +1,168 @@
+//! How much of everything there is on an area: components, holes and ends that hang free, beside the exemplar's.
+
+use glam::DVec2;
+use kurbo::PathEl;
+use rstar::{AABB, PointDistance, RTree, RTreeObject};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::planar::Region;
+use crate::samples::{Curve, Drawing};
+
+/// A hundred square centimetres.
+pub(super) const AREA_MM2: f64 = 10_000.0;
+/// Chords of curves for this are within so much of a pen.
+const CHORD_PENS: f64 = 0.05;
+/// An end lies on its own curve again if that is so many pens further along.
+const AWAY_PENS: f64 = 2.0;
+
+/// Counts for each 100 square centimetres.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+pub struct Density {
+    /// The area that the counts are of, in square millimetres: of an exemplar, of the box around its lines.
+    pub area_mm2: f64,
+    /// Connected components for each 100 square centimetres.
+    pub components: f64,
+    /// Holes for each 100 square centimetres.
+    pub holes: f64,
+    /// Ends of curves that lie on no other ink, for each 100 square centimetres.
+    pub dangling_ends: f64,
+}
+
+impl Density {
+    /// That of a drawing and its ink.
+    pub(super) fn new(drawing: &Drawing, ink: &Region, area_mm2: f64) -> Self {
+        let density = |count: usize| count as f64 * AREA_MM2 / area_mm2;
+        Self {
+            area_mm2,
+            components: density(ink.components()),
+            holes: density(ink.holes()),
+            dangling_ends: density(dangling_ends(drawing)),
+        }
+    }
+}
+
+/// A straight piece of ink.
+struct Stretch {
+    ends: [DVec2; 2],
+    /// How far its ink reaches from it.
+    reach_mm: f64,
+    /// The curve that it is of, and how far along it begins and ends; `None` for the border of an element.
+    of: Option<(usize, [f64; 2])>,
+}
+
+impl RTreeObject for Stretch {
+    type Envelope = AABB<[f64; 2]>;
+
+    fn envelope(&self) -> Self::Envelope {
+        AABB::from_corners(self.ends[0].to_array(), self.ends[1].to_array())
+    }
+}
+
+impl PointDistance for Stretch {
+    fn distance_2(&self, point: &[f64; 2]) -> f64 {
+        let [a, b] = self.ends;
+        let (along, p) = (b - a, DVec2::from(*point));
+        let part = ((p - a).dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        (a + part * along).distance_squared(p)
+    }
+}
+
+/// How many ends of open curves lie on no other ink.
+fn dangling_ends(drawing: &Drawing) -> usize {
+    let mut stretches = Vec::new();
+    for (number, curve) in drawing.curves.iter().enumerate() {
+        let mut along_mm = 0.0;
+        for ends in chords(curve).windows(2).map(|pair| [pair[0], pair[1]]) {
+            let to_mm = along_mm + ends[0].distance(ends[1]);
+            let of = Some((number, [along_mm, to_mm]));
+            stretches.push(Stretch { ends, reach_mm: 0.5 * curve.width_mm, of });
+            along_mm = to_mm;
+        }
+    }
+    for contour in drawing.elements.iter().flat_map(|element| &element.contours) {
+        let ends = |i: usize| [contour[i], contour[(i + 1) % contour.len()]];
+        stretches.extend((0..contour.len()).map(|i| Stretch { ends: ends(i), reach_mm: 0.0, of: None }));
+    }
+    let widest_mm = drawing.curves.iter().map(|curve| curve.width_mm).fold(0.0, f64::max);
+    let tree = RTree::bulk_load(stretches);
+    let is_held = |number: usize, curve: &Curve, at: DVec2, along_mm: f64| {
+        let mut near = tree.locate_within_distance(at.to_array(), widest_mm * widest_mm);
+        near.any(|stretch| {
+            let away_mm = AWAY_PENS * curve.width_mm;
+            let is_own = stretch.of.is_some_and(|(of, [from, to])| {
+                of == number && (from - away_mm..=to + away_mm).contains(&along_mm)
+            });
+            // The cap of an end touches an element beside it.
+            let reach_mm = if stretch.of.is_some() { stretch.reach_mm } else { 0.5 * curve.width_mm };
+            !is_own && stretch.distance_2(&at.to_array()) <= reach_mm * reach_mm
+        }) || drawing.elements.iter().any(|element| winding(&element.contours, at) != 0)
+    };
+    let mut count = 0;
+    for (number, curve) in drawing.curves.iter().enumerate() {
+        if matches!(curve.path.elements().last(), None | Some(PathEl::ClosePath)) {
+            continue;
+        }
+        let points = chords(curve);
+        let length_mm: f64 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+        let ends = [(points[0], 0.0), (points[points.len() - 1], length_mm)];
+        count += ends.into_iter().filter(|&(at, along_mm)| !is_held(number, curve, at, along_mm)).count();
+    }
+    count
+}
+
+fn chords(curve: &Curve) -> Vec<DVec2> {
+    let mut points = Vec::new();
+    let mut put = |p: kurbo::Point| points.push(DVec2::new(p.x, p.y));
+    let mut start = kurbo::Point::ZERO;
+    let tolerance = (CHORD_PENS * curve.width_mm).max(1e-3);
+    kurbo::flatten(&curve.path, tolerance, |el| match el {
+        PathEl::MoveTo(p) => {
+            start = p;
+            put(p);
+        }
+        PathEl::ClosePath => put(start),
+        el => el.end_point().into_iter().for_each(&mut put),
+    });
+    points
+}
+
+/// How often closed polygons go round a point.
+fn winding(contours: &[Vec<DVec2>], p: DVec2) -> i32 {
+    let crosses = |a: DVec2, b: DVec2| match (a.y <= p.y, b.y <= p.y) {
+        (true, false) if (b - a).perp_dot(p - a) > 0.0 => 1,
+        (false, true) if (b - a).perp_dot(p - a) < 0.0 => -1,
+        _ => 0,
+    };
+    let of = |contour: &Vec<DVec2>| -> i32 {
+        let n = contour.len();
+        (0..n).map(|i| crosses(contour[i], contour[(i + 1) % n])).sum()
+    };
+    contours.iter().map(of).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use kurbo::BezPath;
+
+    use super::*;
+    use crate::samples::Element;
+
+    fn ends(paths: &[&str], elements: Vec<Element>) -> usize {
+        let curve = |d: &&str| Curve { path: BezPath::from_svg(d).unwrap(), width_mm: 1.0 };
+        dangling_ends(&Drawing { curves: paths.iter().map(curve).collect(), elements })
+    }
+
+    #[test]
+    fn ends_on_other_ink_do_not_dangle() {
+        assert_eq!(ends(&["M0 0H50"], vec![]), 2);
+        assert_eq!(ends(&["M0 0H50", "M20 0V30"], vec![]), 3);
+        assert_eq!(ends(&["M0 0H50", "M20 0.6V30", "M0 0V9"], vec![]), 4);
+        assert_eq!(ends(&["M0 0H50V50H0Z"], vec![]), 0);
+        // A loop that comes back to itself.
+        assert_eq!(ends(&["M0 0H50V50H20V0"], vec![]), 1);
+        let leaf = [(40.0, -2.0), (60.0, -2.0), (60.0, 2.0), (40.0, 2.0)].map(|(x, y)| DVec2::new(x, y));
+        let leaf = Element { contours: vec![leaf.to_vec()] };
+        assert_eq!(ends(&["M0 0H50", "M61 0H70", "M60.4 0V9"], vec![leaf]), 4);
+    }
+}

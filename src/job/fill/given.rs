@@ -1,0 +1,153 @@
+//! What is read: the exemplar as a drawing, and strokes that are there already.
+
+use std::path::Path;
+
+use glam::DVec2;
+use kurbo::{Affine, PathEl};
+use rustc_hash::FxHashMap;
+
+use super::builder::refused;
+use crate::exemplar::{Limits, Linework, ReadOptions};
+use crate::job::error::JobError;
+use crate::job::flat::READ_SHARE;
+use crate::samples::{Curve, Drawing, Element};
+
+/// Strokes that run beside each other nearer than this part of the narrower pen lie upon each other.
+const UPON: f64 = 0.25;
+/// They do so if it is for more than so many pens.
+const UPON_PENS: f64 = 3.0;
+
+/// The curves and elements of an SVG file, with the pen that was asked for.
+///
+/// # Errors
+/// As [`Linework::read`].
+pub(super) fn read(
+    file: &Path,
+    chord_mm: f64,
+    stroke_mm: Option<f64>,
+) -> Result<(Drawing, Linework), JobError> {
+    let options =
+        ReadOptions { chord_mm: chord_mm * READ_SHARE, target_height_mm: None, limits: Limits::default() };
+    let linework = Linework::read(file, &options)?;
+    let strokes = linework.strokes().iter();
+    let curves =
+        strokes.map(|line| Curve { path: line.path.clone(), width_mm: stroke_mm.unwrap_or(line.width_mm) });
+    let elements = linework.elements().iter().map(|contours| Element { contours: contours.clone() });
+    let drawing = Drawing { curves: curves.collect(), elements: elements.collect() };
+    Ok((drawing, linework))
+}
+
+/// Strokes that are there already, moved by `shift_mm`.
+///
+/// # Errors
+/// As [`Linework::read`]; and [`JobError::Option`] for a file without strokes, and for strokes that lie upon each other.
+pub(super) fn read_kept(
+    file: &Path,
+    chord_mm: f64,
+    stroke_mm: Option<f64>,
+    shift_mm: DVec2,
+) -> Result<(Drawing, Linework), JobError> {
+    let (mut drawing, linework) = read(file, chord_mm, stroke_mm)?;
+    let refuse =
+        |found: String, wanted| Err(refused("--keep", format!("{}: {found}", file.display()), wanted));
+    if drawing.curves.is_empty() {
+        return refuse(
+            "there is no stroke in it".to_owned(),
+            "draw what is to stay as strokes without a fill",
+        );
+    }
+    if let Some((first, second, at)) = upon_each_other(&drawing.curves) {
+        let found = format!(
+            "strokes {} and {} lie upon each other at ({:.2}, {:.2}) mm, so that it is unclear how paths go on there",
+            first + 1,
+            second + 1,
+            at.x,
+            at.y
+        );
+        return refuse(
+            found,
+            "delete one of them, or move them apart; strokes may cross and end on each other",
+        );
+    }
+    let shift = Affine::translate((shift_mm.x, shift_mm.y));
+    drawing.curves.iter_mut().for_each(|curve| curve.path.apply_affine(shift));
+    let points = drawing.elements.iter_mut().flat_map(|element| element.contours.iter_mut().flatten());
+    points.for_each(|p| *p += shift_mm);
+    Ok((drawing, linework))
+}
+
+/// The first two strokes that run upon each other, by their numbers from 0, and where.
+fn upon_each_other(curves: &[Curve]) -> Option<(usize, usize, DVec2)> {
+    let narrowest_mm = curves.iter().map(|curve| curve.width_mm).fold(f64::INFINITY, f64::min);
+    let near_mm = UPON * narrowest_mm;
+    let points: Vec<Vec<DVec2>> = curves.iter().map(|curve| dotted(curve, near_mm)).collect();
+    let cell = |p: DVec2| ((p.x / near_mm).floor() as i64, (p.y / near_mm).floor() as i64);
+    let mut cells: FxHashMap<(i64, i64), Vec<(usize, DVec2)>> = FxHashMap::default();
+    let long = (UPON_PENS / UPON).ceil() as usize;
+    for (number, dots) in points.iter().enumerate() {
+        // How many dots in a row are near each stroke that came before.
+        let mut runs: FxHashMap<usize, usize> = FxHashMap::default();
+        for &p in dots {
+            let (x, y) = cell(p);
+            let around = (-1..=1).flat_map(|i| (-1..=1).map(move |j| (x + i, y + j)));
+            let near = around.filter_map(|at| cells.get(&at)).flatten();
+            let mut others: Vec<usize> =
+                near.filter(|(_, q)| p.distance(*q) < near_mm).map(|&(other, _)| other).collect();
+            others.sort_unstable();
+            others.dedup();
+            runs =
+                others.into_iter().map(|other| (other, runs.get(&other).map_or(1, |run| run + 1))).collect();
+            let first = runs.iter().filter(|(_, run)| **run >= long).map(|(&other, _)| other).min();
+            if let Some(other) = first {
+                return Some((other, number, p));
+            }
+        }
+        for &p in dots {
+            cells.entry(cell(p)).or_default().push((number, p));
+        }
+    }
+    None
+}
+
+/// Points along a curve, so far apart.
+fn dotted(curve: &Curve, step_mm: f64) -> Vec<DVec2> {
+    let mut dots: Vec<DVec2> = Vec::new();
+    let mut start = kurbo::Point::ZERO;
+    kurbo::flatten(&curve.path, 0.1 * step_mm, |el| {
+        let to = match el {
+            PathEl::MoveTo(p) => {
+                start = p;
+                dots.push(DVec2::new(p.x, p.y));
+                return;
+            }
+            PathEl::ClosePath => start,
+            el => el.end_point().unwrap_or(start),
+        };
+        let (from, to) = (dots[dots.len() - 1], DVec2::new(to.x, to.y));
+        let steps = (from.distance(to) / step_mm).floor() as usize;
+        dots.extend((1..=steps).map(|i| from + (to - from).normalize_or_zero() * step_mm * i as f64));
+        if steps == 0 && from.distance(to) > 0.5 * step_mm {
+            dots.push(to);
+        }
+    });
+    dots
+}
+
+#[cfg(test)]
+mod tests {
+    use kurbo::BezPath;
+
+    use super::*;
+
+    #[test]
+    fn strokes_upon_each_other_are_found_and_those_that_cross_are_not() {
+        let found = |paths: &[&str]| {
+            let curve = |d: &&str| Curve { path: BezPath::from_svg(d).unwrap(), width_mm: 1.0 };
+            upon_each_other(&paths.iter().map(curve).collect::<Vec<_>>())
+        };
+        assert_eq!(found(&["M0 0H50", "M20 -9V30", "M0 0L50 20", "M0 3H50"]), None);
+        let (first, second, at) = found(&["M0 0H50", "M0 9H9", "M60 0.1H20"]).unwrap();
+        assert!((first, second) == (0, 2) && at.y == 0.1 && at.x < 48.0, "{at}");
+        assert!(found(&["M0 0C9 9 20 9 30 0", "M0 0C9 9 20 9 30 0"]).is_some());
+    }
+}

@@ -1,0 +1,214 @@
+//! The area that is filled: where its pattern is made, and where that comes to lie on the page.
+//!
+//! An area in the plane is filled where it lies on its page. A band is filled flat, as a strip of (u, v), whose curves are then
+//! laid along the curve; the strip of a closed curve has no ends. Either way the pattern is made half a pen away from the
+//! border, so that its ink ends there.
+
+use glam::DVec2;
+use kurbo::{BezPath, PathEl, Point};
+
+use super::FillJob;
+use super::builder::refused;
+use crate::domain::{BandMap, FillDomain};
+use crate::exemplar::{Limits, read_area};
+use crate::job::band::read_curve;
+use crate::job::error::JobError;
+use crate::job::part::MARGIN_MM;
+use crate::job::report::InputReport;
+use crate::planar::{FillRule, Grid, GridError, GridPoint, Region};
+use crate::samples::{Area, Curve, Drawing, Element};
+
+/// The part of the chord error for each: flattening curves before they are mapped, and mapping them.
+const MAP_SHARE: f64 = 0.25;
+
+/// An area and its page. Lengths are millimetres.
+pub(super) struct Ground {
+    /// Where the pattern is made.
+    pub(super) area: Area,
+    /// What is filled, on its page; no ink is outside of it.
+    pub(super) domain: Region,
+    /// Width and height of the page.
+    pub(super) page_mm: DVec2,
+    /// From the coordinates that the maker knows to those in which the pattern is made.
+    pub(super) shift_mm: DVec2,
+    /// The file that it comes from, if it does.
+    pub(super) input: Option<InputReport>,
+    strip: Option<Strip>,
+}
+
+/// How a strip lies on the page.
+struct Strip {
+    map: BandMap,
+    shift_mm: DVec2,
+}
+
+impl Ground {
+    /// The area of a job whose widest pen is so wide.
+    ///
+    /// # Errors
+    /// [`JobError`] when the area cannot be read or mapped, and when it is narrower than the pen.
+    pub(super) fn new(job: &FillJob, pen_mm: f64) -> Result<Self, JobError> {
+        let options = &job.options;
+        let chord_mm = options.making.tolerances.chord_mm();
+        let ground = match &options.domain {
+            FillDomain::Rect(size) => {
+                let corner = DVec2::splat(MARGIN_MM);
+                let size = DVec2::new(size.width_mm(), size.height_mm());
+                let page_mm = size + 2.0 * MARGIN_MM;
+                let grid = grid(page_mm)?;
+                Self::plane(
+                    filled(grid, &[rectangle(corner, corner + size)])?,
+                    page_mm,
+                    corner,
+                    pen_mm,
+                    chord_mm,
+                )
+            }
+            FillDomain::Path { file, id } => {
+                let region = read_area(file, id.as_deref(), 0.5 * chord_mm, &Limits::default())?;
+                let (low, high) = region.bounds_mm().unwrap_or_default();
+                let page_mm = high - low + 2.0 * MARGIN_MM;
+                let shift_mm = DVec2::splat(MARGIN_MM) - low;
+                let region = region.placed(grid(page_mm)?, |p| p + shift_mm).map_err(grid_error)?;
+                let input = Some(InputReport::of(file));
+                Self { input, ..Self::plane(region, page_mm, shift_mm, pen_mm, chord_mm) }
+            }
+            FillDomain::Band => Self::band(job, pen_mm, chord_mm)?,
+        };
+        match ground.area.region().is_empty() {
+            false => Ok(ground),
+            true => Err(refused(
+                "--domain",
+                format!("it is nowhere wider than the pen of {pen_mm:.2} mm"),
+                "use a larger domain, or a narrower --stroke",
+            )),
+        }
+    }
+
+    fn plane(domain: Region, page_mm: DVec2, shift_mm: DVec2, pen_mm: f64, chord_mm: f64) -> Self {
+        let area = Area::new(inset(&domain, pen_mm, chord_mm));
+        Self { area, domain, page_mm, shift_mm, input: None, strip: None }
+    }
+
+    fn band(job: &FillJob, pen_mm: f64, chord_mm: f64) -> Result<Self, JobError> {
+        let options = &job.options;
+        let (along, width_mm) =
+            options.along.as_ref().zip(options.width_mm).expect("a band was checked to have both");
+        let (curve, input) = read_curve(along, options.round_mm, None)?;
+        let half = 0.5 * width_mm;
+        let map = BandMap::new(curve, -half, half)?;
+        let length_mm = map.curve().length_mm();
+        let is_closed = map.curve().is_closed();
+        let borders: Vec<Vec<DVec2>> = match is_closed {
+            true => [-half, half]
+                .map(|v| map.map_contour(&[DVec2::new(0.0, v)], 1, MAP_SHARE * chord_mm))
+                .to_vec(),
+            false => {
+                let corners = rectangle(DVec2::new(0.0, -half), DVec2::new(length_mm, half));
+                vec![map.map_contour(&corners, 0, MAP_SHARE * chord_mm)]
+            }
+        };
+        let points = || borders.iter().flatten().copied();
+        let low = points().reduce(DVec2::min).unwrap_or_default();
+        let high = points().reduce(DVec2::max).unwrap_or_default();
+        let page_mm = high - low + 2.0 * MARGIN_MM;
+        let on_page = DVec2::splat(MARGIN_MM) - low;
+        let borders: Vec<Vec<DVec2>> =
+            borders.iter().map(|border| border.iter().map(|&p| p + on_page).collect()).collect();
+        let domain = filled(grid(page_mm)?, &borders)?;
+        // Half a lap more on both sides, so that nothing is near the ends of what has none.
+        let beyond = if is_closed { 0.5 * length_mm } else { 0.0 };
+        let ends = [DVec2::new(-beyond, -half), DVec2::new(length_mm + beyond, half)];
+        let strip = filled(grid(DVec2::new(length_mm + beyond, half))?, &[rectangle(ends[0], ends[1])])?;
+        let inside = inset(&strip, pen_mm, chord_mm);
+        let area = if is_closed { Area::rolled(inside, length_mm) } else { Area::new(inside) };
+        let shift_mm = DVec2::new(0.0, -half);
+        Ok(Self { area, domain, page_mm, shift_mm, input, strip: Some(Strip { map, shift_mm: on_page }) })
+    }
+
+    /// Whether the pattern is made on a strip, and laid along a curve.
+    pub(super) fn is_strip(&self) -> bool {
+        self.strip.is_some()
+    }
+
+    /// That of the page.
+    pub(super) fn grid(&self) -> Grid {
+        self.domain.grid()
+    }
+
+    /// A pattern that was made in the area, on the page.
+    pub(super) fn laid(&self, drawing: &Drawing, chord_mm: f64) -> Drawing {
+        let Some(Strip { map, shift_mm }) = &self.strip else { return drawing.clone() };
+        let chord_mm = MAP_SHARE * chord_mm;
+        let curve = |curve: &Curve| {
+            let is_closed = matches!(curve.path.elements().last(), Some(PathEl::ClosePath));
+            let mut points = Vec::new();
+            kurbo::flatten(&curve.path, chord_mm, |el| {
+                points.extend(el.end_point().map(|p| DVec2::new(p.x, p.y)))
+            });
+            let points = map.map_line(&points, chord_mm);
+            let mut path = BezPath::new();
+            for (i, p) in points.iter().map(|&p| p + *shift_mm).enumerate() {
+                let p = Point::new(p.x, p.y);
+                if i == 0 { path.move_to(p) } else { path.line_to(p) }
+            }
+            if is_closed {
+                path.close_path();
+            }
+            Curve { path, width_mm: curve.width_mm }
+        };
+        let element = |element: &Element| {
+            let mapped = |contour: &Vec<DVec2>| {
+                map.map_contour(contour, 0, chord_mm).into_iter().map(|p| p + *shift_mm).collect()
+            };
+            Element { contours: element.contours.iter().map(mapped).collect() }
+        };
+        Drawing {
+            curves: drawing.curves.iter().map(curve).collect(),
+            elements: drawing.elements.iter().map(element).collect(),
+        }
+    }
+
+    /// The ink that is inside of the domain.
+    pub(super) fn clipped(&self, ink: &Region) -> Region {
+        let contours = || ink.contours().chain(self.domain.contours()).map(|c| c.points().to_vec());
+        let all = || contours().flatten();
+        let Some(low) = all().reduce(|a, b| GridPoint::new(a.x.min(b.x), a.y.min(b.y))) else {
+            return Region::empty(self.grid());
+        };
+        let high = all().fold(low, |a, b| GridPoint::new(a.x.max(b.x), a.y.max(b.y)));
+        // One winding less everywhere, by a clockwise frame, leaves what is inside of both. In two steps, what is outside and then the rest,
+        // edges would be rounded twice, and hairs left between them.
+        let [left, below, right, above] = [low.x - 1, low.y - 1, high.x + 1, high.y + 1];
+        let frame = [(left, below), (left, above), (right, above), (right, below)];
+        let frame = frame.map(|(x, y)| GridPoint::new(x, y)).to_vec();
+        let paths: Vec<Vec<GridPoint>> = contours().chain([frame]).collect();
+        Region::fill(self.grid(), &paths, FillRule::Positive)
+    }
+}
+
+/// Where the middle of the pen may be.
+fn inset(domain: &Region, pen_mm: f64, chord_mm: f64) -> Region {
+    match pen_mm > 0.0 {
+        true => domain.offset(-0.5 * pen_mm, chord_mm),
+        false => domain.clone(),
+    }
+}
+
+fn rectangle(low: DVec2, high: DVec2) -> Vec<DVec2> {
+    vec![low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)]
+}
+
+fn filled(grid: Grid, paths: &[Vec<DVec2>]) -> Result<Region, JobError> {
+    let snapped: Result<Vec<Vec<GridPoint>>, GridError> =
+        paths.iter().map(|path| path.iter().map(|&p| grid.snap(p)).collect()).collect();
+    Ok(Region::fill(grid, &snapped.map_err(grid_error)?, FillRule::EvenOdd))
+}
+
+fn grid(reach_mm: DVec2) -> Result<Grid, JobError> {
+    Grid::for_extent(reach_mm.max_element()).map_err(grid_error)
+}
+
+pub(super) fn grid_error(error: GridError) -> JobError {
+    JobError::Fabricate(error.into())
+}

@@ -1,0 +1,294 @@
+//! An area filled with a pattern of curves and elements, by the second engine (Tu 2020).
+//!
+//! The pattern is synthesized as a graph of samples, completed until its ink has what was asked for, clipped to the domain and counted
+//! there. What the pattern's own edges could not give, bridges do. From there on it is a flat part like any other ([`super::flat`]).
+
+mod builder;
+mod census;
+mod clone;
+mod engine;
+mod given;
+mod ground;
+mod report;
+
+pub use builder::{FillBuilder, FillJob};
+pub use census::Density;
+pub use clone::CloneSpec;
+pub use engine::ChangeReport;
+pub use report::FillReport;
+
+use glam::DVec2;
+
+use self::builder::refused;
+use self::engine::Pattern;
+use self::ground::{Ground, grid_error};
+use super::bridging::{self, BridgesReport};
+use super::error::JobError;
+use super::flat::{Flat, generator, name};
+use super::making::EnforcedReport;
+use super::output::{Output, Pending, Target, persist};
+use super::report::InputReport;
+use super::stage::{Clock, Stage};
+use crate::exemplar::Linework;
+use crate::fabricate::Counts;
+use crate::planar::{Grid, Region};
+use crate::samples::{self, Drawing, Given};
+use crate::topology::Wanted;
+
+pub use crate::samples::{
+    Border as SampleBorder, LevelReport, Options as SampleOptions, Start as SampleStart, UnmatchedPrice,
+    Without as SampleWithout,
+};
+
+/// The part of the chord error that strokes may spend where they are drawn.
+const INK_SHARE: f64 = 0.25;
+
+/// An area that is filled, ready to be written.
+#[derive(Debug, Clone)]
+pub struct Fill {
+    job: FillJob,
+    region: Region,
+    drawing: Drawing,
+    page_mm: DVec2,
+    exemplar: InputReport,
+    domain_file: Option<InputReport>,
+    kept: Option<InputReport>,
+    domain_mm2: f64,
+    pen_mm: f64,
+    densities: [Density; 2],
+    levels: Vec<LevelReport>,
+    changes: Vec<ChangeReport>,
+    bridges: Option<BridgesReport>,
+    enforced: Option<EnforcedReport>,
+    notes: Vec<String>,
+    times: Vec<super::report::StageTime>,
+}
+
+impl FillJob {
+    /// The constants of the method for an exemplar, with its levels.
+    fn constants(&self, exemplar: &Drawing) -> SampleOptions {
+        let options = &self.options;
+        let mut levels = samples::default_levels(exemplar, options.number_of_levels());
+        for (i, level) in levels.iter_mut().enumerate() {
+            level.radius_mm = options.radii_mm.get(i).copied().unwrap_or(level.radius_mm);
+            level.spacing_mm = options.spacing_mm.get(i).copied().unwrap_or(level.spacing_mm);
+        }
+        SampleOptions { levels, ..options.constants.clone() }
+    }
+}
+
+impl Fill {
+    pub(super) fn new(job: &FillJob, progress: &mut dyn FnMut(Stage)) -> Result<Self, JobError> {
+        let mut clock = Clock::new(progress);
+        let options = &job.options;
+        let tolerances = &options.making.tolerances;
+        let chord_mm = tolerances.chord_mm();
+        let read = clock.time(Stage::Read, || given::read(&options.exemplar, chord_mm, options.stroke_mm));
+        let (exemplar, linework) = read?;
+        let mut notes = linework.notes().to_vec();
+        let pens_mm = exemplar.curves.iter().map(|curve| curve.width_mm);
+        let pen_mm = pens_mm.fold(options.frame_mm.unwrap_or(0.0), f64::max);
+        let ground = clock.time(Stage::Read, || Ground::new(job, pen_mm))?;
+        let mut given = Given {
+            clones: options.clones.iter().map(|clone| clone.placed(ground.shift_mm)).collect(),
+            ..Given::default()
+        };
+        let mut kept = None;
+        if let Some(file) = &options.keep {
+            let read = || given::read_kept(file, chord_mm, options.stroke_mm, ground.shift_mm);
+            let (drawing, linework) = clock.time(Stage::Read, read)?;
+            given.drawing = drawing;
+            notes.extend_from_slice(linework.notes());
+            kept =
+                Some(InputReport { file: file.display().to_string(), sha256: linework.sha256().to_owned() });
+        }
+        let learnt = density_of(&exemplar, &linework, chord_mm)?;
+        let domain_mm2 = ground.domain.area_mm2();
+        let ends_wanted = (learnt.dangling_ends * domain_mm2 / census::AREA_MM2).round() as usize;
+        let pattern = engine::pattern(job, &exemplar, &ground, &given, ends_wanted, &mut clock)?;
+        let Pattern { drawing, region, changes, levels, lacking } = pattern;
+        let (drawing, region) = clock.time(Stage::Map, || laid(&ground, drawing, region, chord_mm))?;
+        let density = Density::new(&drawing, &region, domain_mm2);
+        let mut fill = Self {
+            page_mm: ground.page_mm,
+            exemplar: InputReport {
+                file: options.exemplar.display().to_string(),
+                sha256: linework.sha256().to_owned(),
+            },
+            domain_file: ground.input,
+            kept,
+            domain_mm2,
+            pen_mm,
+            densities: [learnt, density],
+            levels,
+            changes,
+            bridges: None,
+            enforced: None,
+            notes,
+            times: Vec::new(),
+            job: job.clone(),
+            region,
+            drawing,
+        };
+        fill.bridge(lacking, &mut clock)?;
+        if let Some(mended) = options.making.enforced(&fill.region, &mut clock)? {
+            fill.notes.push(mended.report.note());
+            (fill.region, fill.enforced) = (mended.region, Some(mended.report));
+        }
+        fill.times = clock.times;
+        Ok(fill)
+    }
+
+    /// Lays bridges where the goal is not met, by the pattern's own edges or since it was clipped.
+    fn bridge(&mut self, lacking: Option<String>, clock: &mut Clock<'_>) -> Result<(), JobError> {
+        let options = &self.job.options;
+        if self.region.is_empty() {
+            return Err(refused(
+                "--domain",
+                "no ink of the pattern is inside of it".to_owned(),
+                "use a larger domain, or a smaller exemplar",
+            ));
+        }
+        let without = Counts::of(&self.region);
+        if bridging::wanted(options.goal, without) == without {
+            return Ok(());
+        }
+        let tolerances = options.making.laser.of_pattern(&options.making.tolerances);
+        let width_mm = options.bridge_mm.unwrap_or(self.pen_mm.max(tolerances.min_feature_mm()));
+        if width_mm == 0.0 {
+            return Err(refused(
+                "--bridge",
+                format!(
+                    "{without} came out, and an exemplar without strokes has no pen that could join them"
+                ),
+                "give --bridge with a width, as --bridge 1mm",
+            ));
+        }
+        let laid = clock.time(Stage::Bridge, || {
+            bridging::bridged(&self.region, options.goal, &bridging::options(width_mm, &tolerances, None))
+        });
+        let laid = laid.map_err(|error| match lacking {
+            Some(lacking) => JobError::Refused(format!("{lacking}; bridges do not help: {error}")),
+            None => error.into(),
+        })?;
+        self.region = laid.region;
+        let report = BridgesReport::new(without, laid.bridges);
+        self.notes.push(report.note(Counts::of(&self.region)));
+        self.bridges = Some(report);
+        Ok(())
+    }
+
+    /// The part in millimetres, y up from the lower left corner of its page.
+    pub fn region(&self) -> &Region {
+        &self.region
+    }
+
+    /// Its curves and elements there, without bridges and before anything was thickened.
+    pub fn drawing(&self) -> &Drawing {
+        &self.drawing
+    }
+
+    /// Encodes every output, reads each again, counts, and gives them their names only if all pass. The report goes to `report_file` as
+    /// JSON, if one is named.
+    ///
+    /// # Errors
+    /// [`JobError`] when a file cannot be written or does not pass; then none of them exists under its name.
+    pub fn write(
+        &self,
+        outputs: &[Output],
+        report_file: Option<&Target>,
+        progress: &mut dyn FnMut(Stage),
+    ) -> Result<FillReport, JobError> {
+        self.job.check_outputs(outputs, report_file)?;
+        let (report, pending) = self.deliver(outputs, progress)?;
+        persist(pending, report_file.map(|target| (target, report.to_json())))?;
+        Ok(report)
+    }
+
+    fn deliver(
+        &self,
+        outputs: &[Output],
+        progress: &mut dyn FnMut(Stage),
+    ) -> Result<(FillReport, Vec<Pending>), JobError> {
+        let mut clock = Clock::new(progress);
+        clock.times.clone_from(&self.times);
+        let options = &self.job.options;
+        let flat = Flat {
+            region: &self.region,
+            page_mm: self.page_mm,
+            source: &options.exemplar,
+            seed: Some(options.constants.seed),
+            bridges: self.bridges.as_ref().map_or(&[][..], |report| &report.bridges),
+            making: &options.making,
+        };
+        let blamed = outputs.first().map_or_else(|| "the pattern".into(), |output| name(output.target()));
+        let made = flat.made(&blamed, outputs, &mut clock)?;
+        let [exemplar_density, density] = self.densities;
+        let report = FillReport {
+            schema_version: 1,
+            generator: generator(),
+            exemplar: self.exemplar.clone(),
+            domain: options.domain.to_string(),
+            along: options.along.as_ref().map(ToString::to_string),
+            width_mm: options.width_mm,
+            domain_file: self.domain_file.clone(),
+            kept: self.kept.clone(),
+            domain_mm2: self.domain_mm2,
+            page_mm: self.page_mm.to_array(),
+            seed: options.constants.seed,
+            pen_mm: self.pen_mm,
+            wanted_components: options.goal.components.map(Wanted::ends),
+            wanted_holes: options.goal.holes.map(Wanted::ends),
+            components: self.region.components(),
+            holes: self.region.holes(),
+            exemplar_density,
+            density,
+            levels: self.levels.clone(),
+            changes: self.changes.clone(),
+            bridges: self.bridges.clone(),
+            thickness_mm: options.making.thickness_mm,
+            chord_mm: options.making.tolerances.chord_mm(),
+            enforced: self.enforced.clone(),
+            narrow_places: made.narrow_places,
+            quantities: made.quantities,
+            bytes: made.bytes,
+            solid: made.solid,
+            drawing: made.drawing,
+            laser: made.laser,
+            files: outputs.iter().map(|output| output.target().to_string()).collect(),
+            notes: self.notes.iter().cloned().chain(made.notes).collect(),
+            times: clock.times,
+        };
+        Ok((report, made.pending))
+    }
+}
+
+/// A pattern on its page and its ink inside of the domain.
+fn laid(
+    ground: &Ground,
+    drawing: Drawing,
+    region: Region,
+    chord_mm: f64,
+) -> Result<(Drawing, Region), JobError> {
+    let grid = ground.grid();
+    if !ground.is_strip() {
+        // On one grid with the domain; the ink that was counted, not drawn again.
+        let ink =
+            if region.grid() == grid { region } else { region.placed(grid, |p| p).map_err(grid_error)? };
+        return Ok((drawing, ground.clipped(&ink)));
+    }
+    let drawing = ground.laid(&drawing, chord_mm);
+    let ink = samples::inked(&drawing, grid, INK_SHARE * chord_mm).map_err(grid_error)?;
+    Ok((drawing, ground.clipped(&ink)))
+}
+
+/// How much of everything an exemplar has on the box around its lines.
+fn density_of(exemplar: &Drawing, linework: &Linework, chord_mm: f64) -> Result<Density, JobError> {
+    let Some((low, high)) = exemplar.bounds_mm() else { return Err(samples::SampleError::Empty.into()) };
+    let reach_mm = low.abs().max(high.abs()).max_element() + linework.page_mm()[0].max(linework.page_mm()[1]);
+    let grid = Grid::for_extent(reach_mm).map_err(grid_error)?;
+    let ink = samples::inked(exemplar, grid, chord_mm).map_err(grid_error)?;
+    // A single straight line has a box without area.
+    let size = (high - low).max(DVec2::splat(chord_mm));
+    Ok(Density::new(exemplar, &ink, size.x * size.y))
+}

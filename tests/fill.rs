@@ -1,0 +1,244 @@
+//! Areas filled by the program: counts on the file, ink inside of the domain, what is kept, what is refused.
+
+#[allow(dead_code, reason = "each test crate uses a part of it")]
+mod common;
+
+use std::fmt::Write as _;
+
+use common::{Finished, Room};
+use openwork::planar::{Grid, Region};
+use openwork::verify::{SvgReport, read_svg};
+use serde_json::Value;
+
+const PEN: &str = "fill='none' stroke='black' stroke-width='1' stroke-linecap='round'";
+
+/// Twigs that fork, in rows, on a drawing of 120 mm by 60 mm.
+fn twigs() -> String {
+    let mut body = String::new();
+    for row in 0..4 {
+        for column in 0..8 {
+            let (x, y) = (8 + 14 * column + 6 * (row % 2), 14 + 13 * row + column % 3);
+            let _ = writeln!(body, "<path d='M{x} {y}v-9m0 5l4 -4m-4 2l-4 -4' {PEN}/>");
+        }
+    }
+    body
+}
+
+/// A domain with a hole, on the same page.
+const FRAME: &str = "<path id='frame' d='M5 5H115V55H5Z M45 20H75V40H45Z' fill='none' stroke='red'/>\
+                     <path id='open' d='M5 5H115V55'/>";
+
+fn room() -> Room {
+    let room = Room::with(&[]);
+    room.draw("twigs.svg", &twigs());
+    room.draw("frame.svg", FRAME);
+    room
+}
+
+/// Fills, and gives what is in the drawing and the report.
+fn fill(room: &Room, arguments: &str) -> (SvgReport, Value) {
+    room.succeeds(&format!("fill {arguments} -o out.svg --report out.json"));
+    (read_svg(&room.read("out.svg"), 0.0025).unwrap(), room.json("out.json"))
+}
+
+/// Whether a point in millimetres is in the ink.
+fn covers(region: &Region, x: f64, y: f64) -> bool {
+    let grid: Grid = region.grid();
+    let p = grid.snap(glam::DVec2::new(x, y)).unwrap();
+    region.parts().iter().any(|part| part.covers(p))
+}
+
+#[test]
+fn a_rectangle_has_what_is_asked_for() {
+    let room = room();
+    let (free, report) = fill(&room, "twigs.svg --domain rect:90x60mm");
+    assert_eq!((&report["components"], &report["holes"]), (&free.components.into(), &free.holes.into()));
+    let of = |which: &str, what: &str| report[which][what].as_f64().unwrap();
+    assert!(free.components > 10 && of("exemplar_density", "components") > 30.0, "{report}");
+    let levels = report["levels"].as_array().unwrap();
+    assert_eq!(levels.len(), 3);
+    assert!(levels.iter().all(|level| level["energies"].as_array().unwrap().len() >= 7));
+    let (one, report) = fill(&room, "twigs.svg --domain rect:90x60mm --components 1 --holes 2..9");
+    assert!(one.components == 1 && (2..=9).contains(&one.holes), "{}", one.holes);
+    assert!(!report["changes"].as_array().unwrap().is_empty());
+    for found in [&free, &one] {
+        let (low, high) = found.bounds_mm.unwrap();
+        assert!(low.min_element() > 0.98 && high.x < 91.02 && high.y < 61.02, "{low} {high}");
+        assert_eq!(found.faults, []);
+    }
+}
+
+#[test]
+fn a_frame_is_part_of_the_pattern() {
+    let room = room();
+    let (found, _) = fill(&room, "twigs.svg --domain rect:70x50mm --components 1 --frame 1mm -o out.stl");
+    assert!(found.components == 1 && found.holes >= 1);
+    for (x, y) in [(1.5, 26.0), (70.5, 26.0), (36.0, 1.5), (36.0, 50.5)] {
+        assert!(covers(&found.region, x, y), "{x} {y}");
+    }
+    assert_eq!(room.json("out.json")["solid"]["genus"], found.holes);
+}
+
+#[test]
+fn a_hole_of_the_domain_stays_empty() {
+    let room = room();
+    let (found, report) = fill(&room, "twigs.svg --domain frame.svg#frame --components 1");
+    assert_eq!(found.components, 1);
+    // The domain begins one margin from the corner of the page.
+    for i in 1..30 {
+        for j in 1..20 {
+            let (x, y) = (41.0 + f64::from(i), 16.0 + f64::from(j));
+            assert!(!covers(&found.region, x, y), "{x} {y}");
+        }
+    }
+    assert!((report["domain_mm2"].as_f64().unwrap() - (5500.0 - 600.0)).abs() < 0.01);
+    assert_eq!(report["domain_file"]["file"], "frame.svg");
+}
+
+#[test]
+fn a_band_goes_along_its_curve() {
+    let room = room();
+    let (ring, _) = fill(&room, "twigs.svg --domain band --along circle:80mm --width 24mm --components 1");
+    assert_eq!(ring.components, 1);
+    let (low, high) = ring.bounds_mm.unwrap();
+    assert!((high - low).max_element() < 104.05 && (high - low).min_element() > 95.0, "{low} {high}");
+    assert!(!(0..20).any(|i| covers(&ring.region, 53.0 + 1.3 * f64::from(i), 53.0)), "the inside is empty");
+    let (line, report) = fill(&room, "twigs.svg --domain band --along line:90mm --width 30mm --components 2");
+    assert_eq!(line.components, 2);
+    assert_eq!((&report["domain"], &report["along"]), (&"band".into(), &"line:90mm".into()));
+}
+
+#[test]
+fn elements_are_copied_whole() {
+    let room = Room::with(&[]);
+    let mut body = String::new();
+    for i in 0..32 {
+        let (x, y) = (8 + 14 * (i % 8), 8 + 14 * (i / 8));
+        let _ = writeln!(body, "<g><circle cx='{x}' cy='{y}' r='3'/><path d='M{x} {y}v5' {PEN}/></g>");
+    }
+    room.draw("pins.svg", &body);
+    let (found, _) = fill(&room, "pins.svg --domain rect:90x60mm");
+    assert!(found.components > 10 && found.holes == 0);
+    // All of one size, and none is cut.
+    let areas: Vec<f64> =
+        found.region.parts().iter().map(|p| p.exterior().area_mm2(found.region.grid())).collect();
+    let whole = std::f64::consts::PI * 9.0 + 2.4;
+    let alike = areas.iter().filter(|area| (**area - whole).abs() < 0.4).count();
+    assert!(10 * alike >= 9 * areas.len(), "{areas:?}");
+}
+
+#[test]
+fn what_is_kept_stays() {
+    let room = room();
+    room.draw("begun.svg", &format!("<path d='M10 50C30 20 60 20 80 50' {PEN}/>"));
+    let (found, report) = fill(&room, "twigs.svg --domain rect:90x60mm --keep begun.svg");
+    // Points of the curve, on the page of the result.
+    for t in [0.0_f64, 0.2, 0.5, 0.8, 1.0] {
+        let s = 1.0 - t;
+        let x = s.powi(3) * 10.0 + 3.0 * s * s * t * 30.0 + 3.0 * s * t * t * 60.0 + t.powi(3) * 80.0;
+        let y = s.powi(3) * 10.0 + 3.0 * s * s * t * 40.0 + 3.0 * s * t * t * 40.0 + t.powi(3) * 10.0;
+        assert!(covers(&found.region, x + 1.0, y + 1.0), "{x} {y}");
+    }
+    assert_eq!(report["kept"]["file"], "begun.svg");
+    // A box of the exemplar goes where it is told to.
+    fill(&room, "twigs.svg --domain rect:90x60mm --clone 0,0,30x20->40,30");
+}
+
+#[test]
+fn the_same_bytes_on_any_number_of_threads() {
+    let room = room();
+    let bytes = |threads: &str| {
+        let job = "fill twigs.svg --domain rect:70x50mm --components 1 --seed 5 -o out.svg -o out.png";
+        let finished = Finished::of(room.command(job).env("OPENWORK_THREADS", threads));
+        assert_eq!(finished.code, 0, "{}", finished.stderr);
+        (room.read("out.svg"), room.read("out.png"))
+    };
+    let one = bytes("1");
+    assert!(one == bytes("2") && one == bytes("3"));
+    let (_, _) = fill(&room, "twigs.svg --domain rect:70x50mm --components 1 --seed 6");
+    assert!(room.read("out.svg") != one.0, "another seed");
+}
+
+#[test]
+fn a_preset_has_its_options() {
+    let room = room();
+    room.write(
+        "p.toml",
+        "domain = \"rect:70x50mm\"\n[fill]\ncomponents = 1\nradii = \"14,11,9mm\"\nspacing = \"9,7,5mm\"\n",
+    );
+    let (found, report) = fill(&room, "twigs.svg --preset p.toml");
+    assert_eq!((found.components, &report["levels"][0]["radius_mm"]), (1, &14.0.into()));
+}
+
+#[test]
+fn widths_are_enforced() {
+    let room = room();
+    let (found, report) =
+        fill(&room, "twigs.svg --domain rect:70x50mm --components 1 --min-feature 1.2mm --enforce");
+    assert_eq!(found.components, 1);
+    assert!(report["enforced"]["added_mm2"].as_f64().unwrap() > 0.0);
+    room.succeeds("verify out.svg --components 1 --min-feature 1.15mm");
+}
+
+#[test]
+fn what_cannot_be_learnt_from() {
+    let room = room();
+    room.draw("blank.svg", "");
+    room.draw("one.svg", &format!("<path d='M10 10H14' {PEN}/>"));
+    room.draw("dashed.svg", &format!("<path id='d' stroke-dasharray='2 1' d='M10 10H90' {PEN}/>"));
+    room.draw("stretched.svg", &format!("<g transform='scale(1 2)'><path id='s' d='M9 9H90' {PEN}/></g>"));
+    let refuses = |file: &str, words: &[&str]| {
+        room.refuses(&format!("fill {file} --domain rect:90x60mm -o out.svg"), 2, words);
+    };
+    refuses("nowhere.svg", &["nowhere.svg", "no such file"]);
+    refuses("blank.svg", &["blank.svg", "draws nothing"]);
+    refuses("one.svg", &["sample(s)", "draw more of it"]);
+    refuses("dashed.svg", &["<path id=\"d\"> on line 2", "dashed", "Convert to Dashes"]);
+    refuses("stretched.svg", &["<path id=\"s\"> on line 2", "stretches", "Stroke to Path"]);
+}
+
+#[test]
+fn what_cannot_be_filled() {
+    let room = room();
+    let refuses = |arguments: &str, code: i32, words: &[&str]| {
+        room.refuses(&format!("fill twigs.svg {arguments} -o out.svg"), code, words);
+    };
+    refuses("--domain shape", 2, &["'shape' names no domain", "rect:200x150mm"]);
+    refuses("--domain rect:0x9mm", 2, &["the width is 0 mm", "from 1 to 2000 mm"]);
+    refuses("--domain frame.svg#none", 2, &["no element with the id \"none\"", "frame, open"]);
+    refuses("--domain frame.svg#open", 2, &["<path id=\"open\"> on line 2 is open", "z at the end"]);
+    refuses("--domain frame.svg", 2, &["holds 2 paths", "#id", "frame, open"]);
+    refuses("--domain rect:1x40mm", 2, &["nowhere wider than the pen of 1.00 mm", "--stroke"]);
+    refuses("--domain rect:8x8mm", 2, &["less than a neighbourhood", "--radii"]);
+    refuses(
+        "--domain rect:90x60mm --radii 40,40,40mm --spacing .5,.5,.4mm",
+        2,
+        &["more than 400", "a smaller --radii"],
+    );
+    refuses("--domain rect:90x60mm --radii 9,8mm --levels 3", 2, &["2 length(s)", "3 level(s)", "12,10,8mm"]);
+    refuses("--domain rect:90x60mm --levels 4", 2, &["--levels", "1, 2 or 3"]);
+    refuses("--domain rect:90x60mm --iterations 1001", 2, &["--iterations", "from 0 to 1000"]);
+    refuses("--domain rect:90x60mm --cluster nan", 2, &["--cluster", "from 0 to 10"]);
+    refuses("--domain rect:90x60mm --stroke 0", 2, &["--stroke", "from 0.01 to 100 mm"]);
+    refuses("--domain rect:90x60mm --components 0", 2, &["0 components is no pattern"]);
+    refuses("--domain rect:90x60mm --along circle:65mm", 2, &["--along", "--width 20mm"]);
+    refuses("--domain rect:90x60mm --along circle:65mm --width 9mm", 2, &["rect:90x60mm has no curve"]);
+    refuses("--domain band", 2, &["a band needs the curve", "--along and --width"]);
+    refuses("--domain band --along circle:20mm --width 30mm", 2, &["narrower --width"]);
+    refuses("--domain rect:90x60mm --clone 1,2->3", 2, &["is no copy", "10,20,30x15->100,50"]);
+    refuses("--domain rect:90x60mm --engine pieces", 2, &["invalid value 'pieces'", "samples"]);
+    refuses("--domain rect:90x60mm --holes 4000", 3, &["wanted were 4000 hole(s)"]);
+}
+
+#[test]
+fn what_cannot_be_kept() {
+    let room = room();
+    room.draw("upon.svg", &format!("<path d='M10 10H50' {PEN}/><path d='M60 10H20' {PEN}/>"));
+    room.draw("disc.svg", "<circle cx='30' cy='30' r='9'/>");
+    let refuses = |file: &str, words: &[&str]| {
+        room.refuses(&format!("fill twigs.svg --domain rect:90x60mm --keep {file} -o out.svg"), 2, words);
+    };
+    refuses("upon.svg", &["--keep: upon.svg", "strokes 1 and 2 lie upon each other", "delete one"]);
+    refuses("disc.svg", &["there is no stroke in it", "strokes without a fill"]);
+    room.refuses("fill twigs.svg --domain rect:90x60mm --keep twigs.svg -o twigs.svg", 2, &["twigs.svg"]);
+}
