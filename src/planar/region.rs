@@ -195,6 +195,22 @@ impl Region {
         Self::fill(self.grid, &paths, FillRule::Positive)
     }
 
+    /// The points of this region that are in another one too, which is on the same grid.
+    pub fn within(&self, other: &Self) -> Self {
+        let contours = || self.contours().chain(other.contours()).map(|c| c.points().to_vec());
+        let all = || contours().flatten();
+        let Some(low) = all().reduce(|a, b| GridPoint::new(a.x.min(b.x), a.y.min(b.y))) else {
+            return Self::empty(self.grid);
+        };
+        let high = all().fold(low, |a, b| GridPoint::new(a.x.max(b.x), a.y.max(b.y)));
+        // One winding less everywhere, by a clockwise frame, leaves what is inside of both. In two steps, what is outside and then the
+        // rest, edges would be rounded twice, and hairs left between them.
+        let [left, below, right, above] = [low.x - 1, low.y - 1, high.x + 1, high.y + 1];
+        let frame = [(left, below), (left, above), (right, above), (right, below)];
+        let frame = frame.map(|(x, y)| GridPoint::new(x, y)).to_vec();
+        Self::fill(self.grid, &contours().chain([frame]).collect::<Vec<_>>(), FillRule::Positive)
+    }
+
     /// The points within `radius_mm` of the region, or with a negative radius those deeper inside than that.
     /// Round corners are kept within `chord_mm`.
     pub fn offset(&self, radius_mm: f64, chord_mm: f64) -> Self {
@@ -432,6 +448,18 @@ mod tests {
         assert_eq!((clean.components(), clean.holes(), specks.len()), (1, 1, 2));
         assert!(specks.iter().any(|p| p.distance(DVec2::new(20.0, 0.0)) < 0.01));
         assert_eq!(region.without_specks(0.0).0, region);
+    }
+
+    #[test]
+    fn what_is_in_both_is_exact() {
+        let frame = [square(0.0, 0.0, 10.0), square(2.0, 2.0, 6.0)];
+        let frame = Region::fill(grid(), &frame, FillRule::EvenOdd);
+        let half = Region::fill(grid(), &[path(&[(5.0, -1.0), (20.0, -1.0), (20.0, 20.0), (5.0, 20.0)])], FillRule::NonZero);
+        let both = frame.within(&half);
+        assert_eq!((both.components(), both.holes(), both.area_mm2()), (1, 0, 32.0));
+        assert_eq!(half.within(&frame), both);
+        assert!(both.without(&half).is_empty());
+        assert!(frame.within(&Region::empty(grid())).is_empty());
     }
 
     #[test]

@@ -38,8 +38,6 @@ pub struct Likeness<'a> {
 pub struct Matching {
     /// The sample of the exemplar in the middle.
     pub middle: usize,
-    /// The cost of Eq. 7, in millimetres.
-    pub cost: f64,
     /// How much its votes count: the more, the better it suits (as in Kwatra et al. 2005).
     pub weight: f64,
     /// Every sample of the output's neighbourhood with the exemplar's, if it has one.
@@ -120,7 +118,7 @@ impl<'a> Likeness<'a> {
         let missing = missing.map(|(near, _)| (near.sample, near.offset)).collect();
         let each = cost / (outputs.len() as f64 * self.spacing_mm);
         let weight = (VOTE_FLOOR + each).powf(-self.options.vote_power);
-        Matching { middle: input, cost, weight, pairs, missing }
+        Matching { middle: input, weight, pairs, missing }
     }
 
     /// The problem of Eq. 9. A pair dearer than staying alone is never taken, so it is left out.

@@ -6,7 +6,7 @@ use rstar::{AABB, PointDistance, RTree, RTreeObject};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::planar::Region;
+use crate::planar::{FillRule, Region};
 use crate::samples::{Curve, Drawing};
 
 /// A hundred square centimetres.
@@ -15,12 +15,23 @@ pub(super) const AREA_MM2: f64 = 10_000.0;
 const CHORD_PENS: f64 = 0.05;
 /// An end lies on its own curve again if that is so many pens further along.
 const AWAY_PENS: f64 = 2.0;
+/// Windows along each direction.
+const WINDOWS: usize = 3;
+/// A window is in the domain if all but this part of it is.
+const OUTSIDE: f64 = 1e-6;
+/// Ends nearer than this to the border of a window are cut there, and do not dangle.
+const BORDER_PENS: f64 = 1.0;
 
 /// Counts for each 100 square centimetres.
+///
+/// What hangs together over a border is cut by it, the more the smaller the area is. So the exemplar and the pattern are counted in windows of the
+/// same size, that of the box around the exemplar's lines, and the pattern's figures are means.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Density {
-    /// The area that the counts are of, in square millimetres: of an exemplar, of the box around its lines.
-    pub area_mm2: f64,
+    /// Width and height of a window in millimetres.
+    pub window_mm: [f64; 2],
+    /// How many windows were counted; none where the domain has no room for one, and all of it was counted.
+    pub windows: usize,
     /// Connected components for each 100 square centimetres.
     pub components: f64,
     /// Holes for each 100 square centimetres.
@@ -30,16 +41,56 @@ pub struct Density {
 }
 
 impl Density {
-    /// That of a drawing and its ink.
-    pub(super) fn new(drawing: &Drawing, ink: &Region, area_mm2: f64) -> Self {
-        let density = |count: usize| count as f64 * AREA_MM2 / area_mm2;
-        Self {
-            area_mm2,
-            components: density(ink.components()),
-            holes: density(ink.holes()),
-            dangling_ends: density(dangling_ends(drawing)),
+    /// That of a drawing and its ink in the windows of `size` that fit into `domain`, which is on the ink's grid.
+    pub(super) fn new(drawing: &Drawing, ink: &Region, domain: &Region, size: DVec2) -> Self {
+        let ends = dangling_ends(drawing);
+        let pens = drawing.curves.iter().map(|curve| curve.width_mm);
+        let margin = DVec2::splat(BORDER_PENS * pens.fold(0.0, f64::max));
+        let windows: Vec<(DVec2, Region)> = corners(domain, size)
+            .into_iter()
+            .map(|low| (low, rectangle(ink, low, low + size)))
+            .filter(|(_, window)| window.without(domain).area_mm2() <= OUTSIDE * window.area_mm2())
+            .collect();
+        if windows.is_empty() {
+            return Self::of([ink.components(), ink.holes(), ends.len()], domain.area_mm2(), 0, size);
         }
+        let counts = windows.iter().fold([0; 3], |[components, holes, dangling], (low, window)| {
+            let seen = ink.within(window);
+            let inside = |p: &&DVec2| p.cmpgt(low + margin).all() && p.cmplt(low + size - margin).all();
+            let free = ends.iter().filter(inside).count();
+            [components + seen.components(), holes + seen.holes(), dangling + free]
+        });
+        Self::of(counts, windows.len() as f64 * size.x * size.y, windows.len(), size)
     }
+
+    fn of(counts: [usize; 3], area_mm2: f64, windows: usize, size: DVec2) -> Self {
+        let [components, holes, dangling_ends] = counts.map(|count| count as f64 * AREA_MM2 / area_mm2);
+        Self { window_mm: size.to_array(), windows, components, holes, dangling_ends }
+    }
+}
+
+/// Lower left corners of windows all over the box of `domain`: one where there is room for no more.
+fn corners(domain: &Region, size: DVec2) -> Vec<DVec2> {
+    let (low, high) = domain.bounds_mm().unwrap_or_default();
+    let room = (high - low - size).max(DVec2::ZERO);
+    let count = |room: f64, size: f64| if room > 0.05 * size { WINDOWS } else { 1 };
+    let places = |low: f64, room: f64, n: usize| {
+        (0..n).map(move |i| low + room * if n > 1 { i as f64 / (n - 1) as f64 } else { 0.5 })
+    };
+    let columns = count(room.x, size.x);
+    places(low.y, room.y, count(room.y, size.y))
+        .flat_map(|y| places(low.x, room.x, columns).map(move |x| DVec2::new(x, y)))
+        .collect()
+}
+
+/// A rectangle on the ink's grid; none if it does not fit there.
+fn rectangle(ink: &Region, low: DVec2, high: DVec2) -> Region {
+    let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
+    let path: Result<Vec<_>, _> = corners.iter().map(|&p| ink.grid().snap(p)).collect();
+    path.map_or_else(
+        |_| Region::empty(ink.grid()),
+        |path| Region::fill(ink.grid(), &[path], FillRule::NonZero),
+    )
 }
 
 /// A straight piece of ink.
@@ -68,8 +119,8 @@ impl PointDistance for Stretch {
     }
 }
 
-/// How many ends of open curves lie on no other ink.
-fn dangling_ends(drawing: &Drawing) -> usize {
+/// The ends of open curves that lie on no other ink.
+fn dangling_ends(drawing: &Drawing) -> Vec<DVec2> {
     let mut stretches = Vec::new();
     for (number, curve) in drawing.curves.iter().enumerate() {
         let mut along_mm = 0.0;
@@ -98,7 +149,7 @@ fn dangling_ends(drawing: &Drawing) -> usize {
             !is_own && stretch.distance_2(&at.to_array()) <= reach_mm * reach_mm
         }) || drawing.elements.iter().any(|element| winding(&element.contours, at) != 0)
     };
-    let mut count = 0;
+    let mut dangling = Vec::new();
     for (number, curve) in drawing.curves.iter().enumerate() {
         if matches!(curve.path.elements().last(), None | Some(PathEl::ClosePath)) {
             continue;
@@ -106,9 +157,10 @@ fn dangling_ends(drawing: &Drawing) -> usize {
         let points = chords(curve);
         let length_mm: f64 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
         let ends = [(points[0], 0.0), (points[points.len() - 1], length_mm)];
-        count += ends.into_iter().filter(|&(at, along_mm)| !is_held(number, curve, at, along_mm)).count();
+        let free = ends.into_iter().filter(|&(at, along_mm)| !is_held(number, curve, at, along_mm));
+        dangling.extend(free.map(|(at, _)| at));
     }
-    count
+    dangling
 }
 
 fn chords(curve: &Curve) -> Vec<DVec2> {
@@ -150,7 +202,7 @@ mod tests {
 
     fn ends(paths: &[&str], elements: Vec<Element>) -> usize {
         let curve = |d: &&str| Curve { path: BezPath::from_svg(d).unwrap(), width_mm: 1.0 };
-        dangling_ends(&Drawing { curves: paths.iter().map(curve).collect(), elements })
+        dangling_ends(&Drawing { curves: paths.iter().map(curve).collect(), elements }).len()
     }
 
     #[test]

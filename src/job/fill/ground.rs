@@ -171,19 +171,7 @@ impl Ground {
 
     /// The ink that is inside of the domain.
     pub(super) fn clipped(&self, ink: &Region) -> Region {
-        let contours = || ink.contours().chain(self.domain.contours()).map(|c| c.points().to_vec());
-        let all = || contours().flatten();
-        let Some(low) = all().reduce(|a, b| GridPoint::new(a.x.min(b.x), a.y.min(b.y))) else {
-            return Region::empty(self.grid());
-        };
-        let high = all().fold(low, |a, b| GridPoint::new(a.x.max(b.x), a.y.max(b.y)));
-        // One winding less everywhere, by a clockwise frame, leaves what is inside of both. In two steps, what is outside and then the rest,
-        // edges would be rounded twice, and hairs left between them.
-        let [left, below, right, above] = [low.x - 1, low.y - 1, high.x + 1, high.y + 1];
-        let frame = [(left, below), (left, above), (right, above), (right, below)];
-        let frame = frame.map(|(x, y)| GridPoint::new(x, y)).to_vec();
-        let paths: Vec<Vec<GridPoint>> = contours().chain([frame]).collect();
-        Region::fill(self.grid(), &paths, FillRule::Positive)
+        ink.within(&self.domain)
     }
 }
 

@@ -31,7 +31,7 @@ use super::report::InputReport;
 use super::stage::{Clock, Stage};
 use crate::exemplar::Linework;
 use crate::fabricate::Counts;
-use crate::planar::{Grid, Region};
+use crate::planar::{FillRule, Grid, Region};
 use crate::samples::{self, Drawing, Given};
 use crate::topology::Wanted;
 
@@ -108,7 +108,7 @@ impl Fill {
         let pattern = engine::pattern(job, &exemplar, &ground, &given, ends_wanted, &mut clock)?;
         let Pattern { drawing, region, changes, levels, lacking } = pattern;
         let (drawing, region) = clock.time(Stage::Map, || laid(&ground, drawing, region, chord_mm))?;
-        let density = Density::new(&drawing, &region, domain_mm2);
+        let density = Density::new(&drawing, &region, &ground.domain, learnt.window_mm.into());
         let mut fill = Self {
             page_mm: ground.page_mm,
             exemplar: InputReport {
@@ -290,5 +290,8 @@ fn density_of(exemplar: &Drawing, linework: &Linework, chord_mm: f64) -> Result<
     let ink = samples::inked(exemplar, grid, chord_mm).map_err(grid_error)?;
     // A single straight line has a box without area.
     let size = (high - low).max(DVec2::splat(chord_mm));
-    Ok(Density::new(exemplar, &ink, size.x * size.y))
+    let corners = [low, DVec2::new(low.x + size.x, low.y), low + size, DVec2::new(low.x, low.y + size.y)];
+    let path = corners.iter().map(|&p| grid.snap(p)).collect::<Result<Vec<_>, _>>().map_err(grid_error)?;
+    let window = Region::fill(grid, &[path], FillRule::NonZero);
+    Ok(Density::new(exemplar, &ink, &window, size))
 }
