@@ -454,7 +454,11 @@ mod tests {
     fn what_is_in_both_is_exact() {
         let frame = [square(0.0, 0.0, 10.0), square(2.0, 2.0, 6.0)];
         let frame = Region::fill(grid(), &frame, FillRule::EvenOdd);
-        let half = Region::fill(grid(), &[path(&[(5.0, -1.0), (20.0, -1.0), (20.0, 20.0), (5.0, 20.0)])], FillRule::NonZero);
+        let half = Region::fill(
+            grid(),
+            &[path(&[(5.0, -1.0), (20.0, -1.0), (20.0, 20.0), (5.0, 20.0)])],
+            FillRule::NonZero,
+        );
         let both = frame.within(&half);
         assert_eq!((both.components(), both.holes(), both.area_mm2()), (1, 0, 32.0));
         assert_eq!(half.within(&frame), both);
