@@ -11,7 +11,7 @@ use super::scene::Scene;
 use super::step::{Link, Port, Step};
 use super::work::{Foot, point_at};
 use crate::planar::Sets;
-use crate::samples::Kind;
+use crate::samples::{Edge, Kind};
 
 /// A component of less ink than this many squares of the pen may be taken away where that is less than joining it.
 const SMALL_PENS: f64 = 8.0;
@@ -42,7 +42,7 @@ impl Planner<'_, '_> {
         let mut lines = Lines::new(&scene.work);
         let mut sets = Sets::new(scene.region.components());
         let mut steps = Vec::new();
-        for edge in &scene.work.unrealised {
+        for edge in self.voted() {
             if steps.len() == needed {
                 return steps;
             }
@@ -98,7 +98,7 @@ impl Planner<'_, '_> {
         let scene = self.scene;
         let mut lines = Lines::new(&scene.work);
         let mut steps: Vec<Step> = Vec::new();
-        let voted = scene.work.unrealised.iter().filter_map(|edge| {
+        let voted = self.voted().filter_map(|edge| {
             let [p, q] = self.both_parts(edge.ends)?;
             let [from, to] = edge.ends.map(|end| scene.port(end));
             let link = Link::smooth(scene, &from, &to);
@@ -122,6 +122,12 @@ impl Planner<'_, '_> {
             }
         }
         steps
+    }
+
+    /// The edges that may be added and were voted for, the most confident first.
+    fn voted(&self) -> impl Iterator<Item = &Edge> {
+        let work = &self.scene.work;
+        work.unrealised.iter().take_while(|edge| edge.confidence >= work.completing.least_vote)
     }
 
     fn both_parts(&self, ends: [usize; 2]) -> Option<[usize; 2]> {
