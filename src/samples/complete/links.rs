@@ -17,6 +17,9 @@ use crate::samples::{Edge, Kind};
 const SMALL_PENS: f64 = 8.0;
 /// Candidates for each pair of components, as the cheapest may be in the way of something.
 const PER_PAIR: usize = 6;
+/// A stroke that closes a hole has at least so many edges between its ends, or where there is no such, so many.
+const FAR_HOPS: usize = 6;
+const NEAR_HOPS: usize = 2;
 /// Candidates within a component from one place.
 const PER_PORT: usize = 3;
 /// A link that ends at an edge ends at its sample if that is nearer than this many pens.
@@ -105,11 +108,14 @@ impl Planner<'_, '_> {
             (p == q).then_some((ChangeKind::Enclose, link, Some(edge.confidence)))
         });
         let mut candidates: Vec<_> = voted.collect();
-        for doubling in 0..4 {
-            let reach_mm = scene.spacing_mm * f64::from(3 << doubling);
-            candidates.extend(
-                self.within_parts(reach_mm).into_iter().map(|link| (ChangeKind::Enclose, link, None)),
-            );
+        // Strokes that enclose much, then those that only cut a corner.
+        let reaches = [FAR_HOPS, NEAR_HOPS]
+            .into_iter()
+            .flat_map(|hops| (0..4).map(move |doubling| (hops, 3 << doubling)));
+        for (hops, spacings) in reaches {
+            let reach_mm = scene.spacing_mm * f64::from(spacings);
+            let links = self.within_parts(reach_mm, hops).into_iter();
+            candidates.extend(links.map(|link| (ChangeKind::Enclose, link, None)));
             for (kind, link, confidence) in candidates.drain(..) {
                 if steps.len() == needed {
                     return steps;
@@ -206,11 +212,11 @@ impl Planner<'_, '_> {
         links.into_iter().map(|(_, pair, link)| (pair, link)).collect()
     }
 
-    /// Links that would enclose a hole, the cheapest first.
-    fn within_parts(&self, reach_mm: f64) -> Vec<Link> {
+    /// Links that would enclose a hole with more than `hops` edges around it, the cheapest first.
+    fn within_parts(&self, reach_mm: f64, hops: usize) -> Vec<Link> {
         let mut links: Vec<(f64, Link)> = Vec::new();
         for (part, port) in self.ports() {
-            let own = self.scene.own(port.foot, port.owner);
+            let own = self.scene.own_within(port.foot, port.owner, hops);
             let near = self.scene.lines.near(port.at, reach_mm);
             let others = near
                 .into_iter()
