@@ -144,17 +144,17 @@ impl Class {
         // Of several equal contours any may be the one that answers to the largest.
         let nearly_largest =
             others.contours.iter().filter(|c| c.area > (1.0 - ALIKE) * others.contours[others.largest].area);
-        nearly_largest.flat_map(|contour| mine.turns(contour)).find_map(|similarity| {
+        let answers = |similarity: &Similarity| {
             let slack = ALIKE * similarity.turn.length() * mine.contours[mine.largest].radius;
-            let meets = |c: &Outline| {
+            mine.contours.iter().all(|c| {
                 others.contours.iter().any(|o| {
                     let area = c.area * similarity.turn.length_squared();
                     similarity.apply(c.centre).distance(o.centre) < 2.0 * slack
                         && (area - o.area).abs() < 2.0 * ALIKE * area.abs()
                 })
-            };
-            mine.contours.iter().all(meets).then_some(similarity)
-        })
+            })
+        };
+        nearly_largest.flat_map(|contour| mine.turns(contour)).find(answers)
     }
 }
 

@@ -430,13 +430,7 @@ mod tests {
                 }
                 prop_assert_eq!(curve.path.segments().count(), route.edges.len());
             }
-            // Drawn once more with its own handles it is the same.
-            let mut again = graph.clone();
-            for (edge, handles) in again.edges.iter_mut().zip(&found.handles) {
-                edge.handles = *handles;
-            }
             prop_assert!(found.handles.iter().flatten().all(|h| h.is_finite()));
-            prop_assert_eq!(reconstruct(&again, &[], &area, &options).paths.len() > 0, !found.paths.is_empty());
         }
     }
 }

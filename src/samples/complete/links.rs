@@ -11,12 +11,15 @@ use super::scene::Scene;
 use super::step::{Link, Port, Step};
 use super::work::{Foot, point_at};
 use crate::planar::Sets;
-use crate::samples::Kind;
+use crate::samples::{Edge, Kind};
 
 /// A component of less ink than this many squares of the pen may be taken away where that is less than joining it.
 const SMALL_PENS: f64 = 8.0;
 /// Candidates for each pair of components, as the cheapest may be in the way of something.
 const PER_PAIR: usize = 6;
+/// A stroke that closes a hole has at least so many edges between its ends, or where there is no such, so many.
+const FAR_HOPS: usize = 6;
+const NEAR_HOPS: usize = 2;
 /// Candidates within a component from one place.
 const PER_PORT: usize = 3;
 /// A link that ends at an edge ends at its sample if that is nearer than this many pens.
@@ -42,7 +45,7 @@ impl Planner<'_, '_> {
         let mut lines = Lines::new(&scene.work);
         let mut sets = Sets::new(scene.region.components());
         let mut steps = Vec::new();
-        for edge in &scene.work.unrealised {
+        for edge in self.voted() {
             if steps.len() == needed {
                 return steps;
             }
@@ -98,18 +101,21 @@ impl Planner<'_, '_> {
         let scene = self.scene;
         let mut lines = Lines::new(&scene.work);
         let mut steps: Vec<Step> = Vec::new();
-        let voted = scene.work.unrealised.iter().filter_map(|edge| {
+        let voted = self.voted().filter_map(|edge| {
             let [p, q] = self.both_parts(edge.ends)?;
             let [from, to] = edge.ends.map(|end| scene.port(end));
             let link = Link::smooth(scene, &from, &to);
             (p == q).then_some((ChangeKind::Enclose, link, Some(edge.confidence)))
         });
         let mut candidates: Vec<_> = voted.collect();
-        for doubling in 0..4 {
-            let reach_mm = scene.spacing_mm * f64::from(3 << doubling);
-            candidates.extend(
-                self.within_parts(reach_mm).into_iter().map(|link| (ChangeKind::Enclose, link, None)),
-            );
+        // Strokes that enclose much, then those that only cut a corner.
+        let reaches = [FAR_HOPS, NEAR_HOPS]
+            .into_iter()
+            .flat_map(|hops| (0..4).map(move |doubling| (hops, 3 << doubling)));
+        for (hops, spacings) in reaches {
+            let reach_mm = scene.spacing_mm * f64::from(spacings);
+            let links = self.within_parts(reach_mm, hops).into_iter();
+            candidates.extend(links.map(|link| (ChangeKind::Enclose, link, None)));
             for (kind, link, confidence) in candidates.drain(..) {
                 if steps.len() == needed {
                     return steps;
@@ -122,6 +128,12 @@ impl Planner<'_, '_> {
             }
         }
         steps
+    }
+
+    /// The edges that may be added and were voted for, the most confident first.
+    fn voted(&self) -> impl Iterator<Item = &Edge> {
+        let work = &self.scene.work;
+        work.unrealised.iter().take_while(|edge| edge.confidence >= work.completing.least_vote)
     }
 
     fn both_parts(&self, ends: [usize; 2]) -> Option<[usize; 2]> {
@@ -200,11 +212,11 @@ impl Planner<'_, '_> {
         links.into_iter().map(|(_, pair, link)| (pair, link)).collect()
     }
 
-    /// Links that would enclose a hole, the cheapest first.
-    fn within_parts(&self, reach_mm: f64) -> Vec<Link> {
+    /// Links that would enclose a hole with more than `hops` edges around it, the cheapest first.
+    fn within_parts(&self, reach_mm: f64, hops: usize) -> Vec<Link> {
         let mut links: Vec<(f64, Link)> = Vec::new();
         for (part, port) in self.ports() {
-            let own = self.scene.own(port.foot, port.owner);
+            let own = self.scene.own_within(port.foot, port.owner, hops);
             let near = self.scene.lines.near(port.at, reach_mm);
             let others = near
                 .into_iter()

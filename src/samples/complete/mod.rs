@@ -57,6 +57,8 @@ pub struct CompleteOptions {
     pub leaves_out_small: bool,
     /// Ends are joined along edges of at least this confidence: 0.3.
     pub least_confidence: f64,
+    /// Components are joined, and holes closed, along edges of at least this confidence first: 0.1. With less, a short bridge is as likely.
+    pub least_vote: f64,
     /// Ends nearer than this that point at each other are joined; `None` for 0.6 of the spacing.
     pub reach_mm: Option<f64>,
     /// How many ends there should be in the open, as in the exemplar: no more are joined or trimmed when there are no more than that.
@@ -74,6 +76,7 @@ impl Default for CompleteOptions {
             removes_twigs: true,
             leaves_out_small: true,
             least_confidence: 0.3,
+            least_vote: 0.1,
             reach_mm: None,
             ends_wanted: None,
         }
@@ -207,7 +210,7 @@ impl<'a> Completion<'a> {
         loop {
             let distance = self.distance(&scene.region);
             if distance == 0 {
-                return Ok(self.completed(scene)?);
+                return self.completed(scene);
             }
             let steps = self.planned(&scene, is_bold);
             let (next, has_helped) = self.tried(scene, &steps)?;

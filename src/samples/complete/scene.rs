@@ -83,16 +83,23 @@ impl<'a> Scene<'a> {
 
     /// The ink that a stroke with this foot may touch there.
     pub fn own(&self, foot: Foot, owner: Option<Owner>) -> Vec<Owner> {
+        self.own_within(foot, owner, OWN_HOPS)
+    }
+
+    /// The ink that hangs on to a foot by so many samples, in the order of its owners.
+    pub fn own_within(&self, foot: Foot, owner: Option<Owner>, hops: usize) -> Vec<Owner> {
         let mut edges = Vec::new();
         let mut samples = match foot {
             Foot::Sample(sample) => vec![sample],
             Foot::Edge(edge, _) => self.work.edges[edge].ends.to_vec(),
             Foot::Ink(_) => Vec::new(),
         };
-        for _ in 0..OWN_HOPS {
+        for _ in 0..hops {
             let around: Vec<usize> =
                 samples.iter().flat_map(|&sample| &self.by_sample[sample]).copied().collect();
             samples = around.iter().flat_map(|&edge| self.work.edges[edge].ends).collect();
+            samples.sort_unstable();
+            samples.dedup();
             edges.extend(around);
         }
         edges.sort_unstable();

@@ -119,7 +119,7 @@ fn two_strokes_are_joined_by_the_edge_that_was_voted_for() {
     }
     let edge = |a, b, confidence| Edge { ends: [a, b], confidence, handles: [DVec2::ZERO; 2] };
     graph.edges = vec![edge(0, 1, 1.0), edge(2, 3, 1.0)];
-    graph.unrealised = vec![edge(0, 2, 0.2), edge(1, 2, 0.1)];
+    graph.unrealised = vec![edge(0, 2, 0.2), edge(1, 2, 0.15)];
     let area = area(60.0, 40.0);
     let options = Options::default();
     let goal = goal(Some(1), Some(0));
@@ -127,8 +127,74 @@ fn two_strokes_are_joined_by_the_edge_that_was_voted_for() {
     check(&completed, &goal);
     // The better vote would lie on a stroke.
     let [change] = &completed.changes[..] else { panic!("{:?}", completed.changes) };
-    assert_eq!((change.kind, change.confidence), (ChangeKind::Join, Some(0.1)));
+    assert_eq!((change.kind, change.confidence), (ChangeKind::Join, Some(0.15)));
     assert_eq!(completed.drawing.curves.len(), 1, "it is one path");
+}
+
+#[test]
+fn ends_that_almost_meet_are_joined_and_twigs_go_without_a_goal() {
+    let mut graph = Graph::default();
+    // A line of three edges with a gap after the second, and a twig in its middle.
+    for (x, y) in [(5.0, 20.0), (15.0, 20.0), (25.0, 20.0), (29.0, 20.5), (39.0, 20.5), (15.0, 20.9)] {
+        graph.samples.push(sample(DVec2::new(x, y)));
+    }
+    let edge = |a, b| Edge { ends: [a, b], confidence: 1.0, handles: [DVec2::ZERO; 2] };
+    graph.edges = vec![edge(0, 1), edge(1, 2), edge(3, 4), edge(1, 5)];
+    let area = area(60.0, 40.0);
+    let kinds = |completing: &CompleteOptions| {
+        let completed =
+            complete(&graph, &[], &area, &Options::default(), &Goal::default(), completing).unwrap();
+        check(&completed, &Goal::default());
+        completed.changes.iter().map(|change| change.kind).collect::<Vec<_>>()
+    };
+    assert_eq!(kinds(&CompleteOptions::default()), [ChangeKind::Join, ChangeKind::Trim]);
+    assert_eq!(
+        kinds(&CompleteOptions { removes_twigs: false, ..CompleteOptions::default() }),
+        [ChangeKind::Join]
+    );
+    assert_eq!(
+        kinds(&CompleteOptions { joins_ends: false, ..CompleteOptions::default() }),
+        [ChangeKind::Trim]
+    );
+    // Of five ends, four are as many as there should be.
+    let few = CompleteOptions { ends_wanted: Some(4), ..CompleteOptions::default() };
+    assert_eq!(kinds(&few), [ChangeKind::Join]);
+    assert_eq!(kinds(&CompleteOptions { ends_wanted: Some(5), ..few }), []);
+}
+
+#[test]
+fn a_ring_is_opened_before_it_is_parted() {
+    let mut graph = Graph::default();
+    for i in 0..12 {
+        graph
+            .samples
+            .push(sample(DVec2::new(30.0, 20.0) + 12.0 * DVec2::from_angle(TAU * f64::from(i) / 12.0)));
+        let (i, next) = (i as usize, (i as usize + 1) % 12);
+        graph.edges.push(Edge {
+            ends: [i.min(next), i.max(next)],
+            confidence: 1.0,
+            handles: [DVec2::ZERO; 2],
+        });
+    }
+    let area = area(60.0, 40.0);
+    for components in 1..=3 {
+        let goal = goal(Some(components), Some(0));
+        let found = complete(&graph, &[], &area, &Options::default(), &goal, &CompleteOptions::default());
+        let completed = found.unwrap();
+        check(&completed, &goal);
+        assert_eq!(completed.changes.len(), components as usize);
+    }
+}
+
+#[test]
+fn given_strokes_stay() {
+    let mut graph = net(4, 4, 1.0, &mut Dice(5));
+    graph.samples.iter_mut().for_each(|sample| sample.is_given = true);
+    let completing = CompleteOptions { joins_ends: false, ..CompleteOptions::default() };
+    let refused =
+        complete(&graph, &[], &area_of(4, 4), &Options::default(), &goal(None, Some(0)), &completing);
+    let Err(CompleteError::NotMet { nearest, .. }) = refused else { panic!("{refused:?}") };
+    assert!(nearest.changes.iter().all(|change| change.kind == ChangeKind::Fill));
 }
 
 #[test]

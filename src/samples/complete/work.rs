@@ -9,7 +9,7 @@ use super::frame::frame;
 use crate::planar::{GridError, Region};
 use crate::samples::ink::CountingPlane;
 use crate::samples::{
-    Area, Curve, Drawing, Edge, Element, Graph, Kind, Options, Reconstruction, Sample, reconstruct,
+    Area, Curve, Drawing, Edge, Element, Graph, Kind, Options, Reconstruction, Sample, Without, reconstruct,
 };
 
 /// Where an edge that is added ends.
@@ -22,6 +22,9 @@ pub(super) enum Foot {
     /// At a new sample that lies on the ink of an element or of the frame.
     Ink(DVec2),
 }
+
+/// Where there are only elements, the pen is their size divided by this.
+const PENS_PER_ELEMENT: f64 = 6.0;
 
 /// A cubic Bézier curve by its control points, in millimetres.
 pub(super) type Cubic = [DVec2; 4];
@@ -50,7 +53,8 @@ pub(super) struct Work<'a> {
     pub unrealised: Vec<Edge>,
     pub elements: &'a [Element],
     pub area: &'a Area,
-    options: &'a Options,
+    /// How it is drawn: by the handles of its edges, however they were found.
+    options: Options,
     pub completing: &'a CompleteOptions,
     /// Where its ink is counted.
     pub plane: CountingPlane,
@@ -68,15 +72,12 @@ impl<'a> Work<'a> {
         graph: &'a Graph,
         elements: &'a [Element],
         area: &'a Area,
-        options: &'a Options,
+        options: &Options,
         completing: &'a CompleteOptions,
     ) -> Self {
         let mut samples = graph.samples.clone();
-        if let Some(width_mm) = completing.stroke_mm {
-            samples
-                .iter_mut()
-                .filter(|sample| sample.kind == Kind::Curve)
-                .for_each(|sample| sample.width_mm = width_mm);
+        for sample in samples.iter_mut().filter(|sample| sample.kind == Kind::Curve) {
+            sample.width_mm = completing.stroke_mm.unwrap_or(sample.width_mm);
         }
         let handles = reconstruct(graph, &[], area, options).handles;
         let edges =
@@ -88,7 +89,7 @@ impl<'a> Work<'a> {
             unrealised: graph.unrealised.clone(),
             elements,
             area,
-            options,
+            options: Options { without: Without::default(), ..options.clone() },
             completing,
             plane: CountingPlane::of(area),
             frame: completing.frame_mm.map_or_else(Vec::new, |width_mm| frame(area, width_mm)),
@@ -106,14 +107,13 @@ impl<'a> Work<'a> {
         widths.sort_by(f64::total_cmp);
         let size = |element: &Element| {
             let outline = element.contours.first().map_or(&[][..], Vec::as_slice);
-            let (low, high) = outline
-                .iter()
-                .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
+            let low = outline.iter().fold(DVec2::INFINITY, |low, &p| low.min(p));
+            let high = outline.iter().fold(DVec2::NEG_INFINITY, |high, &p| high.max(p));
             (high - low).min_element().max(0.0)
         };
         let of_elements = || {
             let sizes = self.elements.iter().map(size).sum::<f64>();
-            sizes / self.elements.len().max(1) as f64 / 6.0
+            sizes / self.elements.len().max(1) as f64 / PENS_PER_ELEMENT
         };
         let wanted = self.completing.stroke_mm.or(widths.get(widths.len() / 2).copied());
         wanted.unwrap_or_else(of_elements).max(4.0 * self.completing.chord_mm)
@@ -246,7 +246,7 @@ impl<'a> Work<'a> {
         }
     }
 
-    /// The graph as it is now.
+    /// The graph as it is now. Samples that have lost their edges are still there, and draw nothing.
     pub fn graph(&self) -> Graph {
         let edges: Vec<Edge> = self.present().map(|edge| self.edges[edge]).collect();
         let mut samples = self.samples.clone();
@@ -263,7 +263,7 @@ impl<'a> Work<'a> {
 
     /// How it is drawn, with the frame.
     pub fn drawn(&self) -> Reconstruction {
-        let mut drawn = reconstruct(&self.graph(), self.elements, self.area, self.options);
+        let mut drawn = reconstruct(&self.graph(), self.elements, self.area, &self.options);
         drawn.drawing.curves.extend(self.frame.iter().cloned());
         drawn
     }
