@@ -10,10 +10,10 @@ use super::laser::say_cuts;
 use super::progress::Progress;
 use super::run::{BRIDGES_SHOWN, CliError, output, say_bridges, say_notes, say_quantities};
 use super::values;
-use crate::domain::{CurveSpec, FillDomain};
+use crate::domain::{CurveSpec, FillDomain, Twist};
 use crate::job::{
     CloneSpec, FillBuilder, FillJob, FillReport, FlatMaking, Format, JobError, Output, SampleBorder,
-    SampleOptions, SampleStart, SampleWithout, Target, UnmatchedPrice,
+    SampleOptions, SampleStart, SampleWithout, SpaceOptions, Target, UnmatchedPrice,
 };
 use crate::planar::Tolerances;
 
@@ -35,6 +35,8 @@ Examples:
     openwork fill scales.svg --domain shirt.svg#front --components 1 --seed 7 -o front.svg
   A ring, 20 mm wide, whose middle line is a circle:
     openwork fill waves.svg --domain band --along circle:90mm --width 20mm --components 1 -o ring.svg
+  A bracelet that stands, in one piece:
+    openwork fill leaves.svg --domain band --along ring:65mm --width 30mm --components 1 --frame 1.5mm -o bracelet.stl
   Go on from strokes that are there, with a finer look around:
     openwork fill branches.svg --domain rect:200x150mm --keep begun.svg --radii 16,12,9mm --spacing 10,7,5mm -o whole.svg
   A corner of the exemplar, 30 mm wide and 20 mm high, copied to a place:
@@ -56,12 +58,20 @@ pub(super) struct FillArguments {
     #[arg(long, value_name = "NAME", value_parser = ["samples"], default_value = "samples")]
     engine: String,
     /// The curve of --domain band, which its middle line follows: line:120mm, circle:65mm (its diameter), path:FILE.svg or
-    /// path:FILE.svg#id
+    /// path:FILE.svg#id. In space, where drawings are the pattern laid flat: ring:65mm, helix:65mm,pitch=20mm,turns=3 (inner diameters),
+    /// points:FILE.csv or points:FILE.obj
     #[arg(long, value_name = "SPEC", value_parser = values::curve)]
     along: Option<CurveSpec>,
     /// How wide the strip of --domain band is
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     width: Option<f64>,
+    /// Leave a ring open, so wide straight across the inside: a cuff
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    gap: Option<f64>,
+    /// Turn a band in space about its curve: degrees over the whole length, or a table of places in mm with degrees, as
+    /// 0:0,40:90,120:90
+    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true)]
+    twist: Option<Twist>,
     /// Round corners of --along to this radius [default: a corner is an error]
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     round: Option<f64>,
@@ -246,8 +256,10 @@ fn job(a: &FillArguments) -> Result<FillJob, CliError> {
         print: a.part.print.options(),
         picture: a.part.picture.options(),
     };
-    let mut builder =
-        FillBuilder::new(&a.exemplar, a.domain.clone()).constants(a.method.constants(a.seed)).making(making);
+    let mut builder = FillBuilder::new(&a.exemplar, a.domain.clone())
+        .constants(a.method.constants(a.seed))
+        .making(making)
+        .space(SpaceOptions { gap_mm: a.gap, twist: a.twist.clone(), points: None });
     match (&a.along, a.width) {
         (Some(along), Some(width_mm)) => builder = builder.along(along.clone(), width_mm),
         (None, None) => {}
