@@ -252,7 +252,7 @@ fn what_cannot_be_filled() {
     refuses("--domain rect:90x60mm --along circle:65mm", 2, &["--along", "--width 20mm"]);
     refuses("--domain rect:90x60mm --along circle:65mm --width 9mm", 2, &["rect:90x60mm has no curve"]);
     refuses("--domain band", 2, &["a band needs the curve", "--along and --width"]);
-    refuses("--domain band --along circle:20mm --width 30mm", 2, &["narrower --width"]);
+    refuses("--domain band --along circle:20mm --width 60mm", 2, &["narrower --width"]);
     refuses("--domain band --along line:80mm --width 30mm --gap 3mm", 2, &["only a ring has a gap"]);
     refuses("--domain rect:90x60mm --clone 1,2->3", 2, &["is no copy", "10,20,30x15->100,50"]);
     refuses("--domain rect:90x60mm --engine pieces", 2, &["invalid value 'pieces'", "samples"]);

@@ -84,41 +84,6 @@ pub(super) struct FillArguments {
     /// What random choices come from: another number, another pattern; the same one, the same bytes
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
     seed: u64,
-    /// Draw all strokes so wide [default: as wide as the exemplar's]
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
-    stroke: Option<f64>,
-    /// A stroke so wide along the border of the domain, which belongs to the pattern
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
-    frame: Option<f64>,
-    /// The width of bridges, which join components and open holes where no edge of the pattern does [default: that of the pen]
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
-    bridge: Option<f64>,
-    /// Strokes that are there already, in the domain or beside it, and stay as they are; the pattern goes on from them. Drawn on the page
-    /// of the domain's file; of a rectangle or a strip, from its lower left corner
-    #[arg(long, value_name = "FILE.svg")]
-    keep: Option<PathBuf>,
-    /// Copy a box of the exemplar to a place before anything else, in mm from lower left corners: X,Y,WxH->X,Y; may be repeated
-    #[arg(long, value_name = "SRC->DST", value_parser = str::parse::<CloneSpec>, allow_hyphen_values = true)]
-    clone: Vec<CloneSpec>,
-    #[command(flatten)]
-    method: MethodArguments,
-    #[command(flatten)]
-    part: PartArguments,
-    /// A file to write: .svg, .dxf, .stl, .3mf, .obj or .png; may be repeated; - is SVG on standard output
-    #[arg(short, long, value_name = "FILE", required = true)]
-    output: Vec<PathBuf>,
-    /// Write a report of what was asked for, made and measured (JSON; - for standard output)
-    #[arg(long, value_name = "FILE")]
-    report: Option<PathBuf>,
-    /// Say nothing but errors
-    #[arg(short, long)]
-    quiet: bool,
-}
-
-/// The constants of Tu 2020, with the paper's values unless the help says otherwise.
-#[derive(Debug, Args)]
-#[command(next_help_heading = "Constants of the method")]
-struct MethodArguments {
     /// Levels, from coarse to fine: 1, 2 or 3 [default: as many as --radii or --spacing has, or 3]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     levels: Option<usize>,
@@ -136,6 +101,41 @@ struct MethodArguments {
     /// How it begins: patches of the exemplar, each suiting those around it, or noise, single samples
     #[arg(long, value_name = "WAY", value_parser = ["patches", "noise"], default_value = "patches")]
     start: String,
+    /// Draw all strokes so wide [default: as wide as the exemplar's]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    stroke: Option<f64>,
+    /// A stroke so wide along the border of the domain, which belongs to the pattern
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    frame: Option<f64>,
+    /// The width of bridges, which join components and open holes where no edge of the pattern does [default: that of the pen]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    bridge: Option<f64>,
+    /// Strokes that are there already, in the domain or beside it, and stay as they are; the pattern goes on from them. Drawn on the page
+    /// of the domain's file; of a rectangle or a strip, from its lower left corner
+    #[arg(long, value_name = "FILE.svg")]
+    keep: Option<PathBuf>,
+    /// Copy a box of the exemplar to a place before anything else, in mm from lower left corners: X,Y,WxH->X,Y; may be repeated
+    #[arg(long, value_name = "SRC->DST", value_parser = str::parse::<CloneSpec>, allow_hyphen_values = true)]
+    clone: Vec<CloneSpec>,
+    #[command(flatten)]
+    part: PartArguments,
+    /// A file to write: .svg, .dxf, .stl, .3mf, .obj or .png; may be repeated; - is SVG on standard output
+    #[arg(short, long, value_name = "FILE", required = true)]
+    output: Vec<PathBuf>,
+    /// Write a report of what was asked for, made and measured (JSON; - for standard output)
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
+    /// Say nothing but errors
+    #[arg(short, long)]
+    quiet: bool,
+    #[command(flatten)]
+    method: MethodArguments,
+}
+
+/// The constants of Tu 2020, with the paper's values unless the help says otherwise.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Constants of the method")]
+struct MethodArguments {
     /// How it ends at the border: cut, made beyond it and cut there, or within, kept inside as in the paper
     #[arg(long, value_name = "WAY", value_parser = ["cut", "within"], default_value = "cut")]
     border: String,
@@ -191,13 +191,13 @@ struct MethodArguments {
 
 impl MethodArguments {
     /// The constants; levels are set apart.
-    fn constants(&self, seed: u64) -> SampleOptions {
+    fn constants(&self, arguments: &FillArguments) -> SampleOptions {
         let leaves_out = |part: &str| self.without.iter().any(|word| word == part);
         SampleOptions {
             levels: Vec::new(),
-            iterations: self.iterations,
-            seed,
-            start: if self.start == "noise" { SampleStart::Noise } else { SampleStart::Patches },
+            iterations: arguments.iterations,
+            seed: arguments.seed,
+            start: if arguments.start == "noise" { SampleStart::Noise } else { SampleStart::Patches },
             border: if self.border == "within" { SampleBorder::Within } else { SampleBorder::Cut },
             attribute_weight: self.attribute_weight,
             edge_count_price: self.edge_count_price,
@@ -257,7 +257,7 @@ fn job(a: &FillArguments) -> Result<FillJob, CliError> {
         picture: a.part.picture.options(),
     };
     let mut builder = FillBuilder::new(&a.exemplar, a.domain.clone())
-        .constants(a.method.constants(a.seed))
+        .constants(a.method.constants(a))
         .making(making)
         .space(SpaceOptions { gap_mm: a.gap, twist: a.twist.clone(), points: None });
     match (&a.along, a.width) {
@@ -287,13 +287,13 @@ fn job(a: &FillArguments) -> Result<FillJob, CliError> {
     if let Some(holes) = a.holes.0 {
         builder = builder.holes(holes);
     }
-    if let Some(levels) = a.method.levels {
+    if let Some(levels) = a.levels {
         builder = builder.levels(levels);
     }
-    if let Some(radii) = &a.method.radii {
+    if let Some(radii) = &a.radii {
         builder = builder.radii_mm(radii.0.clone());
     }
-    if let Some(spacing) = &a.method.spacing {
+    if let Some(spacing) = &a.spacing {
         builder = builder.spacing_mm(spacing.0.clone());
     }
     if let Some(keep) = &a.keep {
