@@ -129,7 +129,6 @@ fn a_band_in_space_has_its_counts_as_it_stands() {
     };
     refuses("--chamfer 0.3mm", &["--chamfer", "lie flat"]);
     refuses("--bridge 1mm", &["--bridge", "would not meet"]);
-    refuses("--thickness 60mm", &["mm"]);
 }
 
 #[test]
