@@ -132,7 +132,7 @@ fn scales() -> String {
     svg
 }
 
-/// Walls of a maze without loops, of which some have fallen down.
+/// Walls of a maze with few loops, of which some have fallen down.
 fn maze() -> String {
     const CELLS: usize = 11;
     const PITCH: f64 = 5.6;
@@ -159,10 +159,11 @@ fn maze() -> String {
     let mut walls = vec![[false; 2]; CELLS * CELLS];
     for (a, b, _) in edges {
         let (ra, rb) = (find(&root, a), find(&root, b));
-        if ra != rb {
+        // A few close a loop.
+        if ra != rb || random.unit() < 0.14 {
             root[ra] = rb;
             // Some have fallen.
-            walls[a][usize::from(b != a + 1)] = random.unit() < 0.88;
+            walls[a][usize::from(b != a + 1)] = random.unit() < 0.86;
         }
     }
     // Walls in a row are one line.

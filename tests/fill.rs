@@ -109,6 +109,29 @@ fn a_band_goes_along_its_curve() {
 }
 
 #[test]
+fn a_band_in_space_has_its_counts_as_it_stands() {
+    let room = room();
+    let arguments =
+        "twigs.svg --domain band --along ring:50mm --width 24mm --components 1 --frame 1.2mm -o out.stl";
+    let (flat, report) = fill(&room, arguments);
+    // The way round is one of the holes.
+    let holes = report["holes"].as_u64().unwrap();
+    assert!(report["components"] == 1 && holes >= 2, "{report}");
+    assert_eq!((&report["solid"]["genus"], &report["flat"]["is_joined"]), (&holes.into(), &true.into()));
+    assert_eq!(report["flat"]["holes"], flat.holes);
+    room.succeeds(&format!("verify out.stl --components 1 --holes {holes}"));
+    let open = "twigs.svg --domain band --along helix:40mm,pitch=34mm,turns=1.2 --width 24mm --components 1 -o out.stl";
+    let (flat, report) = fill(&room, open);
+    assert!(flat.components == 1 && report["flat"]["is_joined"] == false);
+    let refuses = |more: &str, words: &[&str]| {
+        let job = "fill twigs.svg --domain band --along ring:50mm --width 24mm -o out.stl";
+        room.refuses(&format!("{job} {more}"), 2, words);
+    };
+    refuses("--chamfer 0.3mm", &["--chamfer", "lie flat"]);
+    refuses("--bridge 1mm", &["--bridge", "would not meet"]);
+}
+
+#[test]
 fn elements_are_copied_whole() {
     let room = Room::with(&[]);
     let mut body = String::new();
@@ -192,7 +215,11 @@ fn what_cannot_be_learnt_from() {
     };
     refuses("nowhere.svg", &["nowhere.svg", "no such file"]);
     refuses("blank.svg", &["blank.svg", "draws nothing"]);
-    refuses("one.svg", &["sample(s)", "draw more of it"]);
+    room.refuses(
+        "fill one.svg --domain rect:90x60mm --radii 12mm --spacing 8mm -o out.svg",
+        2,
+        &["has 2 sample(s)", "draw more of it"],
+    );
     refuses("dashed.svg", &["<path id=\"d\"> on line 2", "dashed", "Convert to Dashes"]);
     refuses("stretched.svg", &["<path id=\"s\"> on line 2", "stretches", "Stroke to Path"]);
 }
@@ -208,7 +235,7 @@ fn what_cannot_be_filled() {
     refuses("--domain frame.svg#none", 2, &["no element with the id \"none\"", "frame, open"]);
     refuses("--domain frame.svg#open", 2, &["<path id=\"open\"> on line 2 is open", "z at the end"]);
     refuses("--domain frame.svg", 2, &["holds 2 paths", "#id", "frame, open"]);
-    refuses("--domain rect:1x40mm", 2, &["nowhere wider than the pen of 1.00 mm", "--stroke"]);
+    refuses("--domain rect:1x40mm --stroke 1.5mm", 2, &["nowhere wider than the pen of 1.50 mm", "--stroke"]);
     refuses("--domain rect:8x8mm", 2, &["less than a neighbourhood", "--radii"]);
     refuses(
         "--domain rect:90x60mm --radii 40,40,40mm --spacing .5,.5,.4mm",
@@ -224,7 +251,8 @@ fn what_cannot_be_filled() {
     refuses("--domain rect:90x60mm --along circle:65mm", 2, &["--along", "--width 20mm"]);
     refuses("--domain rect:90x60mm --along circle:65mm --width 9mm", 2, &["rect:90x60mm has no curve"]);
     refuses("--domain band", 2, &["a band needs the curve", "--along and --width"]);
-    refuses("--domain band --along circle:20mm --width 30mm", 2, &["narrower --width"]);
+    refuses("--domain band --along circle:20mm --width 60mm", 2, &["narrower --width"]);
+    refuses("--domain band --along line:80mm --width 30mm --gap 3mm", 2, &["only a ring has a gap"]);
     refuses("--domain rect:90x60mm --clone 1,2->3", 2, &["is no copy", "10,20,30x15->100,50"]);
     refuses("--domain rect:90x60mm --engine pieces", 2, &["invalid value 'pieces'", "samples"]);
     refuses("--domain rect:90x60mm --holes 4000", 3, &["wanted were 4000 hole(s)"]);

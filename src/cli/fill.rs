@@ -10,10 +10,10 @@ use super::laser::say_cuts;
 use super::progress::Progress;
 use super::run::{BRIDGES_SHOWN, CliError, output, say_bridges, say_notes, say_quantities};
 use super::values;
-use crate::domain::{CurveSpec, FillDomain};
+use crate::domain::{CurveSpec, FillDomain, Twist};
 use crate::job::{
     CloneSpec, FillBuilder, FillJob, FillReport, FlatMaking, Format, JobError, Output, SampleBorder,
-    SampleOptions, SampleStart, SampleWithout, Target, UnmatchedPrice,
+    SampleOptions, SampleStart, SampleWithout, SpaceOptions, Target, UnmatchedPrice,
 };
 use crate::planar::Tolerances;
 
@@ -35,6 +35,8 @@ Examples:
     openwork fill scales.svg --domain shirt.svg#front --components 1 --seed 7 -o front.svg
   A ring, 20 mm wide, whose middle line is a circle:
     openwork fill waves.svg --domain band --along circle:90mm --width 20mm --components 1 -o ring.svg
+  A bracelet that stands, in one piece:
+    openwork fill leaves.svg --domain band --along ring:65mm --width 30mm --components 1 --frame 1.5mm -o bracelet.stl
   Go on from strokes that are there, with a finer look around:
     openwork fill branches.svg --domain rect:200x150mm --keep begun.svg --radii 16,12,9mm --spacing 10,7,5mm -o whole.svg
   A corner of the exemplar, 30 mm wide and 20 mm high, copied to a place:
@@ -56,12 +58,20 @@ pub(super) struct FillArguments {
     #[arg(long, value_name = "NAME", value_parser = ["samples"], default_value = "samples")]
     engine: String,
     /// The curve of --domain band, which its middle line follows: line:120mm, circle:65mm (its diameter), path:FILE.svg or
-    /// path:FILE.svg#id
+    /// path:FILE.svg#id. In space, where drawings are the pattern laid flat: ring:65mm, helix:65mm,pitch=20mm,turns=3 (inner diameters),
+    /// points:FILE.csv or points:FILE.obj
     #[arg(long, value_name = "SPEC", value_parser = values::curve)]
     along: Option<CurveSpec>,
     /// How wide the strip of --domain band is
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     width: Option<f64>,
+    /// Leave a ring open, so wide straight across the inside: a cuff
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    gap: Option<f64>,
+    /// Turn a band in space about its curve: degrees over the whole length, or a table of places in mm with degrees, as
+    /// 0:0,40:90,120:90
+    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true)]
+    twist: Option<Twist>,
     /// Round corners of --along to this radius [default: a corner is an error]
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     round: Option<f64>,
@@ -74,41 +84,6 @@ pub(super) struct FillArguments {
     /// What random choices come from: another number, another pattern; the same one, the same bytes
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
     seed: u64,
-    /// Draw all strokes so wide [default: as wide as the exemplar's]
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
-    stroke: Option<f64>,
-    /// A stroke so wide along the border of the domain, which belongs to the pattern
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
-    frame: Option<f64>,
-    /// The width of bridges, which join components and open holes where no edge of the pattern does [default: that of the pen]
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
-    bridge: Option<f64>,
-    /// Strokes that are there already, in the domain or beside it, and stay as they are; the pattern goes on from them. Drawn on the page
-    /// of the domain's file; of a rectangle or a strip, from its lower left corner
-    #[arg(long, value_name = "FILE.svg")]
-    keep: Option<PathBuf>,
-    /// Copy a box of the exemplar to a place before anything else, in mm from lower left corners: X,Y,WxH->X,Y; may be repeated
-    #[arg(long, value_name = "SRC->DST", value_parser = str::parse::<CloneSpec>, allow_hyphen_values = true)]
-    clone: Vec<CloneSpec>,
-    #[command(flatten)]
-    method: MethodArguments,
-    #[command(flatten)]
-    part: PartArguments,
-    /// A file to write: .svg, .dxf, .stl, .3mf, .obj or .png; may be repeated; - is SVG on standard output
-    #[arg(short, long, value_name = "FILE", required = true)]
-    output: Vec<PathBuf>,
-    /// Write a report of what was asked for, made and measured (JSON; - for standard output)
-    #[arg(long, value_name = "FILE")]
-    report: Option<PathBuf>,
-    /// Say nothing but errors
-    #[arg(short, long)]
-    quiet: bool,
-}
-
-/// The constants of Tu 2020, with the paper's values unless the help says otherwise.
-#[derive(Debug, Args)]
-#[command(next_help_heading = "Constants of the method")]
-struct MethodArguments {
     /// Levels, from coarse to fine: 1, 2 or 3 [default: as many as --radii or --spacing has, or 3]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     levels: Option<usize>,
@@ -126,6 +101,41 @@ struct MethodArguments {
     /// How it begins: patches of the exemplar, each suiting those around it, or noise, single samples
     #[arg(long, value_name = "WAY", value_parser = ["patches", "noise"], default_value = "patches")]
     start: String,
+    /// Draw all strokes so wide [default: as wide as the exemplar's]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    stroke: Option<f64>,
+    /// A stroke so wide along the border of the domain, which belongs to the pattern
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    frame: Option<f64>,
+    /// The width of bridges, which join components and open holes where no edge of the pattern does [default: that of the pen]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    bridge: Option<f64>,
+    /// Strokes that are there already, in the domain or beside it, and stay as they are; the pattern goes on from them. Drawn on the page
+    /// of the domain's file; of a rectangle or a strip, from its lower left corner
+    #[arg(long, value_name = "FILE.svg")]
+    keep: Option<PathBuf>,
+    /// Copy a box of the exemplar to a place before anything else, in mm from lower left corners: X,Y,WxH->X,Y; may be repeated
+    #[arg(long, value_name = "SRC->DST", value_parser = str::parse::<CloneSpec>, allow_hyphen_values = true)]
+    clone: Vec<CloneSpec>,
+    #[command(flatten)]
+    part: PartArguments,
+    /// A file to write: .svg, .dxf, .stl, .3mf, .obj or .png; may be repeated; - is SVG on standard output
+    #[arg(short, long, value_name = "FILE", required = true)]
+    output: Vec<PathBuf>,
+    /// Write a report of what was asked for, made and measured (JSON; - for standard output)
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
+    /// Say nothing but errors
+    #[arg(short, long)]
+    quiet: bool,
+    #[command(flatten)]
+    method: MethodArguments,
+}
+
+/// The constants of Tu 2020, with the paper's values unless the help says otherwise.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Constants of the method")]
+struct MethodArguments {
     /// How it ends at the border: cut, made beyond it and cut there, or within, kept inside as in the paper
     #[arg(long, value_name = "WAY", value_parser = ["cut", "within"], default_value = "cut")]
     border: String,
@@ -181,13 +191,13 @@ struct MethodArguments {
 
 impl MethodArguments {
     /// The constants; levels are set apart.
-    fn constants(&self, seed: u64) -> SampleOptions {
+    fn constants(&self, arguments: &FillArguments) -> SampleOptions {
         let leaves_out = |part: &str| self.without.iter().any(|word| word == part);
         SampleOptions {
             levels: Vec::new(),
-            iterations: self.iterations,
-            seed,
-            start: if self.start == "noise" { SampleStart::Noise } else { SampleStart::Patches },
+            iterations: arguments.iterations,
+            seed: arguments.seed,
+            start: if arguments.start == "noise" { SampleStart::Noise } else { SampleStart::Patches },
             border: if self.border == "within" { SampleBorder::Within } else { SampleBorder::Cut },
             attribute_weight: self.attribute_weight,
             edge_count_price: self.edge_count_price,
@@ -246,8 +256,10 @@ fn job(a: &FillArguments) -> Result<FillJob, CliError> {
         print: a.part.print.options(),
         picture: a.part.picture.options(),
     };
-    let mut builder =
-        FillBuilder::new(&a.exemplar, a.domain.clone()).constants(a.method.constants(a.seed)).making(making);
+    let mut builder = FillBuilder::new(&a.exemplar, a.domain.clone())
+        .constants(a.method.constants(a))
+        .making(making)
+        .space(SpaceOptions { gap_mm: a.gap, twist: a.twist.clone(), points: None });
     match (&a.along, a.width) {
         (Some(along), Some(width_mm)) => builder = builder.along(along.clone(), width_mm),
         (None, None) => {}
@@ -275,13 +287,13 @@ fn job(a: &FillArguments) -> Result<FillJob, CliError> {
     if let Some(holes) = a.holes.0 {
         builder = builder.holes(holes);
     }
-    if let Some(levels) = a.method.levels {
+    if let Some(levels) = a.levels {
         builder = builder.levels(levels);
     }
-    if let Some(radii) = &a.method.radii {
+    if let Some(radii) = &a.radii {
         builder = builder.radii_mm(radii.0.clone());
     }
-    if let Some(spacing) = &a.method.spacing {
+    if let Some(spacing) = &a.spacing {
         builder = builder.spacing_mm(spacing.0.clone());
     }
     if let Some(keep) = &a.keep {

@@ -126,6 +126,7 @@ pub(super) fn extruded(
         seed: None,
         bridges: bridges.as_ref().map_or(&[][..], |report| &report.bridges),
         making,
+        lain: None,
     };
     let made = flat.made(file, outputs, &mut clock)?;
     notes.extend(made.notes);

@@ -12,11 +12,14 @@ use super::error::JobError;
 use super::laser::{Cutting, LaserOptions, LaserReport};
 use super::making::{self, Border, Mended, Quantities};
 use super::output::{Format, Output, Pending, Target};
+use super::part::Part;
 use super::picture::{PictureOptions, Pictured, Show};
 use super::print::PrintOptions;
 use super::raised::{self, Raised};
 use super::small;
+use super::space;
 use super::stage::{Clock, Stage};
+use crate::domain::SpaceMap;
 use crate::export::{self, SvgOptions};
 use crate::fabricate::{Bridge, Counts, Material, Solid};
 use crate::planar::{GridPoint, Region, Tolerances};
@@ -115,6 +118,16 @@ pub(super) struct Flat<'f> {
     pub(super) bridges: &'f [Bridge],
     /// How it is made.
     pub(super) making: &'f FlatMaking,
+    /// Where it lies, if that is not in the plane; then the drawing is the part laid flat.
+    pub(super) lain: Option<Lain<'f>>,
+}
+
+/// A part along a curve in space.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lain<'f> {
+    /// It as it is laid flat, and what it has as it stands.
+    pub(super) part: &'f Part,
+    pub(super) map: &'f SpaceMap,
 }
 
 /// What was made of it, and what was found in the files.
@@ -152,8 +165,21 @@ impl Flat<'_> {
             holes: Some(region.holes().into()),
             ..Expected::default()
         };
-        let raise = |notes: &mut Vec<String>| print.solid(region, thickness_mm, tolerances.chord_mm(), notes);
-        let document = print.document(self.source, self.seed, Counts::of(region));
+        let raise = |notes: &mut Vec<String>| match self.lain {
+            Some(Lain { part, map }) => {
+                notes.extend(space::relief_notes(map, tolerances.chord_mm()));
+                space::solid(part, map, tolerances.chord_mm())
+            }
+            None => print.solid(region, thickness_mm, tolerances.chord_mm(), notes),
+        };
+        let counts = self.lain.map_or_else(|| Counts::of(region), |lain| lain.part.counts);
+        let standing = Expected {
+            components: Some(counts.components.into()),
+            holes: Some(counts.holes.into()),
+            ..Expected::default()
+        };
+        let joined = self.lain.and_then(|lain| lain.part.joined.as_ref());
+        let document = print.document(self.source, self.seed, counts);
         let mut cutting = match laser.is_needed(outputs) {
             true => {
                 let curve_chord_mm = tolerances.chord_mm() * (1.0 - READ_SHARE);
@@ -164,14 +190,22 @@ impl Flat<'_> {
             false => None,
         };
         let kept = cutting.as_ref().filter(|_| laser.carve).map_or(region, Cutting::kept);
-        let is_shown = picture.view.is_some() || !print.profile(thickness_mm)?.is_upright();
-        let wanted = raised::Wanted { outputs, document: &document, expected: &expected, is_shown };
+        let is_shown =
+            picture.view.is_some() || self.lain.is_some() || !print.profile(thickness_mm)?.is_upright();
+        let wanted = raised::Wanted { outputs, document: &document, expected: &standing, is_shown };
         // Neither needs the other.
         let (narrow_places, raised) = clock.both(
             |clock| {
                 clock.time(Stage::Verify, || {
                     let narrow_places = making::worst_places(kept, tolerances);
-                    check_widths(kept, tolerances, blamed, enforce).map(|()| narrow_places)
+                    // What was cut open is judged with what lies beyond the cut.
+                    match joined {
+                        Some(joined) => joined
+                            .check_widths(kept, tolerances)
+                            .map(|()| joined.narrow_places(&narrow_places, kept, tolerances)),
+                        None => making::check_widths(kept, tolerances).map(|()| narrow_places),
+                    }
+                    .map_err(|mismatch| too_narrow(mismatch, blamed, enforce || joined.is_some()))
                 })
             },
             |clock| Raised::new(wanted, clock, raise),
@@ -201,8 +235,9 @@ impl Flat<'_> {
                     let bytes = clock.time(Stage::Svg, || self.svg(chord_mm))?;
                     sizes.push(bytes.len());
                     let item = Pending::new(target, bytes)?;
-                    drawn =
-                        Some(clock.time(Stage::Verify, || check_svg(target, &item, &expected, tolerances))?);
+                    drawn = Some(clock.time(Stage::Verify, || {
+                        check_svg(target, &item, &expected, tolerances, joined.is_some())
+                    })?);
                     item
                 }
                 Format::Png => {
@@ -266,17 +301,10 @@ impl Flat<'_> {
     }
 }
 
-/// The widths that were asked for are those of what is kept, whatever files are made of it.
-fn check_widths(
-    region: &Region,
-    tolerances: &Tolerances,
-    file: &Path,
-    is_enforced: bool,
-) -> Result<(), JobError> {
-    making::check_widths(region, tolerances).map_err(|mismatch| {
-        let remedy = if is_enforced { "" } else { "; --enforce would mend it" }.to_owned();
-        JobError::Mismatch { file: file.to_owned(), mismatch, remedy }
-    })
+/// That what is kept lacks a width that was asked for, whatever files are made of it.
+fn too_narrow(mismatch: Mismatch, file: &Path, is_mended: bool) -> JobError {
+    let remedy = if is_mended { "" } else { "; --enforce would mend it" }.to_owned();
+    JobError::Mismatch { file: file.to_owned(), mismatch, remedy }
 }
 
 pub(super) fn generator() -> String {
@@ -289,11 +317,15 @@ fn check_svg(
     pending: &Pending,
     expected: &Expected,
     tolerances: &Tolerances,
+    is_cut_open: bool,
 ) -> Result<SvgReport, JobError> {
     let bytes = pending.read_again()?;
     let report = verify::read_svg(&bytes, tolerances.chord_mm() / 4.0)
         .map_err(|error| JobError::Unjudged { file: name(target), error })?;
     report.check(expected).map_err(|mismatch| mismatched(target, mismatch))?;
+    if is_cut_open {
+        return Ok(report);
+    }
     // The outline has the whole widths; curves that stand for it take off their part on either side.
     making::check_widths_less(&report.region, tolerances, tolerances.chord_mm())
         .map_err(|mismatch| mismatched(target, mismatch))?;

@@ -9,6 +9,7 @@ use crate::job::error::JobError;
 use crate::job::flat::FlatMaking;
 use crate::job::making;
 use crate::job::output::{Output, Target};
+use crate::job::space::SpaceOptions;
 use crate::job::stage::Stage;
 use crate::topology::{Goal, Wanted};
 
@@ -36,6 +37,7 @@ pub struct FillBuilder {
     pub(super) along: Option<CurveSpec>,
     pub(super) width_mm: Option<f64>,
     pub(super) round_mm: Option<f64>,
+    pub(super) space: SpaceOptions,
     pub(super) goal: Goal,
     pub(super) levels: Option<usize>,
     pub(super) radii_mm: Vec<f64>,
@@ -58,6 +60,7 @@ impl FillBuilder {
             along: None,
             width_mm: None,
             round_mm: None,
+            space: SpaceOptions::default(),
             goal: Goal::default(),
             levels: None,
             radii_mm: Vec::new(),
@@ -81,6 +84,12 @@ impl FillBuilder {
     /// The radius to which corners of that curve are rounded; without one, a corner is an error.
     pub fn round_mm(mut self, radius_mm: f64) -> Self {
         self.round_mm = Some(radius_mm);
+        self
+    }
+
+    /// What is asked of a band along a curve in space, beyond the curve.
+    pub fn space(mut self, space: SpaceOptions) -> Self {
+        self.space = space;
         self
     }
 
@@ -236,12 +245,12 @@ impl FillBuilder {
                     return Err(refused("--width", found, "it must be from 0.5 to 10000 mm"));
                 }
                 match along {
-                    CurveSpec::Line { .. } | CurveSpec::Circle { .. } | CurveSpec::Path { .. } => Ok(()),
-                    _ => Err(refused(
+                    CurveSpec::Model { .. } => Err(refused(
                         "--along",
-                        format!("{along} is a curve in space, along which only openwork band lays ornament"),
-                        "use line:LENGTH, circle:DIAMETER or path:FILE.svg#id",
+                        format!("{along} is one that only openwork surface follows"),
+                        "use a line, a circle, a path, a ring, a helix or points",
                     )),
+                    _ => Ok(()),
                 }
             }
             _ => Err(refused(
@@ -331,7 +340,7 @@ impl FillJob {
             FillDomain::Rect(_) | FillDomain::Band => None,
         };
         let curve = match &options.along {
-            Some(CurveSpec::Path { file, .. }) => Some(file.as_path()),
+            Some(CurveSpec::Path { file, .. } | CurveSpec::Points { file }) => Some(file.as_path()),
             _ => None,
         };
         let others = [domain, curve, options.keep.as_deref(), options.making.laser.engrave.as_deref()];

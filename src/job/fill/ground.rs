@@ -2,14 +2,15 @@
 //!
 //! An area in the plane is filled where it lies on its page. A band is filled flat, as a strip of (u, v), whose curves are then
 //! laid along the curve; the strip of a closed curve has no ends. Either way the pattern is made half a pen away from the
-//! border, so that its ink ends there.
+//! border, so that its ink ends there. A strip for a curve in space stays flat on its page ([`super::sheet`]).
 
 use glam::DVec2;
-use kurbo::{BezPath, PathEl, Point};
+use kurbo::{Affine, BezPath, PathEl, Point};
 
 use super::FillJob;
 use super::builder::refused;
-use crate::domain::{BandMap, FillDomain};
+use super::sheet::{Sheet, unrolled};
+use crate::domain::{BandMap, CurveSpec, FillDomain};
 use crate::exemplar::{Limits, read_area};
 use crate::job::band::read_curve;
 use crate::job::error::JobError;
@@ -36,10 +37,12 @@ pub(super) struct Ground {
     strip: Option<Strip>,
 }
 
-/// How a strip lies on the page.
-struct Strip {
-    map: BandMap,
-    shift_mm: DVec2,
+/// How a strip becomes what is on the page.
+enum Strip {
+    /// Laid along a curve in the plane.
+    Along { map: BandMap, shift_mm: DVec2 },
+    /// Cut open: a strip without ends, so long, that is laid along a closed curve in space.
+    Open { length_mm: f64, shift_mm: DVec2 },
 }
 
 impl Ground {
@@ -47,7 +50,7 @@ impl Ground {
     ///
     /// # Errors
     /// [`JobError`] when the area cannot be read or mapped, and when it is narrower than the pen.
-    pub(super) fn new(job: &FillJob, pen_mm: f64) -> Result<Self, JobError> {
+    pub(super) fn new(job: &FillJob, sheet: Option<&Sheet>, pen_mm: f64) -> Result<Self, JobError> {
         let options = &job.options;
         let chord_mm = options.making.tolerances.chord_mm();
         let ground = match &options.domain {
@@ -73,10 +76,17 @@ impl Ground {
                 let input = Some(InputReport::of(file));
                 Self { input, ..Self::plane(region, page_mm, shift_mm, pen_mm, chord_mm) }
             }
-            FillDomain::Band => Self::band(job, pen_mm, chord_mm)?,
+            FillDomain::Band => match sheet {
+                Some(sheet) => Self::flat(sheet, pen_mm, chord_mm)?,
+                None => Self::band(job, pen_mm, chord_mm)?,
+            },
+        };
+        let points = match &options.along {
+            Some(CurveSpec::Points { file }) => Some(InputReport::of(file)),
+            _ => None,
         };
         match ground.area.region().is_empty() {
-            false => Ok(ground),
+            false => Ok(Self { input: points.or(ground.input), ..ground }),
             true => Err(refused(
                 "--domain",
                 format!("it is nowhere wider than the pen of {pen_mm:.2} mm"),
@@ -123,7 +133,34 @@ impl Ground {
         let inside = inset(&strip, pen_mm, chord_mm);
         let area = if is_closed { Area::rolled(inside, length_mm) } else { Area::new(inside) };
         let shift_mm = DVec2::new(0.0, -half);
-        Ok(Self { area, domain, page_mm, shift_mm, input, strip: Some(Strip { map, shift_mm: on_page }) })
+        Ok(Self {
+            area,
+            domain,
+            page_mm,
+            shift_mm,
+            input,
+            strip: Some(Strip::Along { map, shift_mm: on_page }),
+        })
+    }
+
+    /// A strip that is laid along a curve in space: on the page it is flat.
+    fn flat(sheet: &Sheet, pen_mm: f64, chord_mm: f64) -> Result<Self, JobError> {
+        let [low, high] = sheet.map.v_range_mm();
+        let length_mm = sheet.map.curve().length_mm();
+        let size = DVec2::new(length_mm, high - low);
+        let corner = DVec2::splat(MARGIN_MM);
+        let page_mm = size + 2.0 * MARGIN_MM;
+        let domain = filled(grid(page_mm)?, &[rectangle(corner, corner + size)])?;
+        if !sheet.is_closed() {
+            return Ok(Self::plane(domain, page_mm, corner, pen_mm, chord_mm));
+        }
+        let beyond = 0.5 * length_mm;
+        let ends = [DVec2::new(-beyond, low), DVec2::new(length_mm + beyond, high)];
+        let strip = filled(grid(DVec2::new(length_mm + beyond, high))?, &[rectangle(ends[0], ends[1])])?;
+        let area = Area::rolled(inset(&strip, pen_mm, chord_mm), length_mm);
+        let on_page = corner - DVec2::new(0.0, low);
+        let strip = Some(Strip::Open { length_mm, shift_mm: on_page });
+        Ok(Self { area, domain, page_mm, shift_mm: DVec2::new(0.0, low), input: None, strip })
     }
 
     /// Whether the pattern is made on a strip, and laid along a curve.
@@ -138,7 +175,11 @@ impl Ground {
 
     /// A pattern that was made in the area, on the page.
     pub(super) fn laid(&self, drawing: &Drawing, chord_mm: f64) -> Drawing {
-        let Some(Strip { map, shift_mm }) = &self.strip else { return drawing.clone() };
+        let (map, shift_mm) = match &self.strip {
+            None => return drawing.clone(),
+            Some(Strip::Open { shift_mm, .. }) => return moved(drawing, *shift_mm),
+            Some(Strip::Along { map, shift_mm }) => (map, shift_mm),
+        };
         let chord_mm = MAP_SHARE * chord_mm;
         let curve = |curve: &Curve| {
             let is_closed = matches!(curve.path.elements().last(), Some(PathEl::ClosePath));
@@ -169,9 +210,39 @@ impl Ground {
         }
     }
 
+    /// Where on the page the curve of a strip begins, at its middle line.
+    pub(super) fn begin_mm(&self) -> DVec2 {
+        let (low, high) = self.domain.bounds_mm().unwrap_or_default();
+        DVec2::new(low.x, 0.5 * (low.y + high.y))
+    }
+
+    /// The ink that is inside of the domain; of a strip that was cut open, with how far along its curve that was.
+    pub(super) fn opened(&self, ink: &Region) -> Result<(Region, f64), JobError> {
+        let Some(Strip::Open { length_mm, .. }) = self.strip else { return Ok((self.clipped(ink), 0.0)) };
+        let grid = self.grid();
+        let begin = grid.steps(self.begin_mm().x);
+        let lap = grid.steps(self.begin_mm().x + length_mm) - begin;
+        let (one, at) = unrolled(ink, begin, lap)?;
+        Ok((one, grid.mm(at)))
+    }
+
     /// The ink that is inside of the domain.
     pub(super) fn clipped(&self, ink: &Region) -> Region {
         ink.within(&self.domain)
+    }
+}
+
+/// A drawing elsewhere.
+fn moved(drawing: &Drawing, by: DVec2) -> Drawing {
+    let curve = |curve: &Curve| Curve {
+        path: Affine::translate((by.x, by.y)) * &curve.path,
+        width_mm: curve.width_mm,
+    };
+    let contour = |contour: &Vec<DVec2>| contour.iter().map(|&p| p + by).collect();
+    let element = |element: &Element| Element { contours: element.contours.iter().map(contour).collect() };
+    Drawing {
+        curves: drawing.curves.iter().map(curve).collect(),
+        elements: drawing.elements.iter().map(element).collect(),
     }
 }
 

@@ -10,6 +10,7 @@ mod engine;
 mod given;
 mod ground;
 mod report;
+mod sheet;
 
 pub use builder::{FillBuilder, FillJob};
 pub use census::Density;
@@ -22,12 +23,14 @@ use glam::DVec2;
 use self::builder::refused;
 use self::engine::Pattern;
 use self::ground::{Ground, grid_error};
+use self::sheet::Sheet;
 use super::bridging::{self, BridgesReport};
 use super::error::JobError;
-use super::flat::{Flat, generator, name};
+use super::flat::{Flat, Lain, generator, name};
 use super::making::EnforcedReport;
 use super::output::{Output, Pending, Target, persist};
-use super::report::InputReport;
+use super::part::Part;
+use super::report::{FlatPattern, InputReport};
 use super::stage::{Clock, Stage};
 use crate::exemplar::Linework;
 use crate::fabricate::Counts;
@@ -48,6 +51,8 @@ const INK_SHARE: f64 = 0.25;
 pub struct Fill {
     job: FillJob,
     region: Region,
+    /// Of a strip in space: where it lies, and the strip.
+    sheet: Option<(Sheet, Part)>,
     drawing: Drawing,
     page_mm: DVec2,
     exemplar: InputReport,
@@ -80,15 +85,20 @@ impl FillJob {
 impl Fill {
     pub(super) fn new(job: &FillJob, progress: &mut dyn FnMut(Stage)) -> Result<Self, JobError> {
         let mut clock = Clock::new(progress);
-        let options = &job.options;
-        let tolerances = &options.making.tolerances;
-        let chord_mm = tolerances.chord_mm();
+        let sheet = clock.time(Stage::Read, || Sheet::new(job))?;
+        let mut job = job.clone();
+        if let Some(sheet) = &sheet {
+            job.options.making.tolerances = sheet.tolerances;
+        }
+        let (job, options) = (&job, &job.options);
+        let chord_mm = options.making.tolerances.chord_mm();
         let read = clock.time(Stage::Read, || given::read(&options.exemplar, chord_mm, options.stroke_mm));
         let (exemplar, linework) = read?;
         let mut notes = linework.notes().to_vec();
+        notes.extend(sheet.as_ref().and_then(|sheet| sheet.note.clone()));
         let pens_mm = exemplar.curves.iter().map(|curve| curve.width_mm);
         let pen_mm = pens_mm.fold(options.frame_mm.unwrap_or(0.0), f64::max);
-        let ground = clock.time(Stage::Read, || Ground::new(job, pen_mm))?;
+        let ground = clock.time(Stage::Read, || Ground::new(job, sheet.as_ref(), pen_mm))?;
         let mut given = Given {
             clones: options.clones.iter().map(|clone| clone.placed(ground.shift_mm)).collect(),
             ..Given::default()
@@ -107,8 +117,10 @@ impl Fill {
         let ends_wanted = (learnt.dangling_ends * domain_mm2 / census::AREA_MM2).round() as usize;
         let pattern = engine::pattern(job, &exemplar, &ground, &given, ends_wanted, &mut clock)?;
         let Pattern { drawing, region, changes, levels, lacking } = pattern;
-        let (drawing, region) = clock.time(Stage::Map, || laid(&ground, drawing, region, chord_mm))?;
-        let density = Density::new(&drawing, &region, &ground.domain, learnt.window_mm.into());
+        let (drawing, region, cut_mm) =
+            clock.time(Stage::Map, || laid(&ground, drawing, region, chord_mm))?;
+        let begin_mm = ground.begin_mm();
+        let density = Density::new(&drawing, &region, &ground.domain);
         let mut fill = Self {
             page_mm: ground.page_mm,
             exemplar: InputReport {
@@ -127,13 +139,29 @@ impl Fill {
             notes,
             times: Vec::new(),
             job: job.clone(),
+            sheet: None,
             region,
             drawing,
         };
-        fill.bridge(lacking, &mut clock)?;
+        let is_closed = sheet.as_ref().is_some_and(Sheet::is_closed);
+        if !is_closed {
+            fill.bridge(lacking.clone(), &mut clock)?;
+        }
         if let Some(mended) = options.making.enforced(&fill.region, &mut clock)? {
             fill.notes.push(mended.report.note());
             (fill.region, fill.enforced) = (mended.region, Some(mended.report));
+        }
+        if let Some(sheet) = sheet {
+            let part = sheet.part(fill.region.clone(), fill.page_mm, begin_mm, cut_mm)?;
+            if bridging::wanted(options.goal, part.counts) != part.counts {
+                return Err(JobError::Refused(lacking.unwrap_or_else(|| {
+                    format!(
+                        "{} came out on the closed strip; try another --seed, or a ring with a --gap",
+                        part.counts
+                    )
+                })));
+            }
+            fill.sheet = Some((sheet, part));
         }
         fill.times = clock.times;
         Ok(fill)
@@ -205,6 +233,20 @@ impl Fill {
         Ok(report)
     }
 
+    /// What its drawing is, of a strip in space.
+    fn flat_pattern(&self) -> Option<FlatPattern> {
+        let (sheet, part) = self.sheet.as_ref()?;
+        let Counts { components, holes } = Counts::of(&self.region);
+        let cut_mm = part.joined.as_ref().map(|joined| joined.cut_mm);
+        Some(FlatPattern {
+            components,
+            holes,
+            is_joined: cut_mm.is_some(),
+            cut_mm,
+            scales: sheet.map.scales(),
+        })
+    }
+
     fn deliver(
         &self,
         outputs: &[Output],
@@ -220,10 +262,12 @@ impl Fill {
             seed: Some(options.constants.seed),
             bridges: self.bridges.as_ref().map_or(&[][..], |report| &report.bridges),
             making: &options.making,
+            lain: self.sheet.as_ref().map(|(sheet, part)| Lain { part, map: &sheet.map }),
         };
         let blamed = outputs.first().map_or_else(|| "the pattern".into(), |output| name(output.target()));
         let made = flat.made(&blamed, outputs, &mut clock)?;
         let [exemplar_density, density] = self.densities;
+        let counts = self.sheet.as_ref().map_or_else(|| Counts::of(&self.region), |(_, part)| part.counts);
         let report = FillReport {
             schema_version: 1,
             generator: generator(),
@@ -239,8 +283,9 @@ impl Fill {
             pen_mm: self.pen_mm,
             wanted_components: options.goal.components.map(Wanted::ends),
             wanted_holes: options.goal.holes.map(Wanted::ends),
-            components: self.region.components(),
-            holes: self.region.holes(),
+            components: counts.components,
+            holes: counts.holes,
+            flat: self.flat_pattern(),
             exemplar_density,
             density,
             levels: self.levels.clone(),
@@ -263,35 +308,38 @@ impl Fill {
     }
 }
 
-/// A pattern on its page and its ink inside of the domain.
+/// A pattern on its page and its ink inside of the domain; and where along its curve a closed strip was cut open.
 fn laid(
     ground: &Ground,
     drawing: Drawing,
     region: Region,
     chord_mm: f64,
-) -> Result<(Drawing, Region), JobError> {
+) -> Result<(Drawing, Region, f64), JobError> {
     let grid = ground.grid();
     if !ground.is_strip() {
         // On one grid with the domain; the ink that was counted, not drawn again.
         let ink =
             if region.grid() == grid { region } else { region.placed(grid, |p| p).map_err(grid_error)? };
-        return Ok((drawing, ground.clipped(&ink)));
+        return Ok((drawing, ground.clipped(&ink), 0.0));
     }
     let drawing = ground.laid(&drawing, chord_mm);
     let ink = samples::inked(&drawing, grid, INK_SHARE * chord_mm).map_err(grid_error)?;
-    Ok((drawing, ground.clipped(&ink)))
+    let (ink, cut_mm) = ground.opened(&ink)?;
+    Ok((drawing, ink, cut_mm))
 }
 
-/// How much of everything an exemplar has on the box around its lines.
+/// How much of everything an exemplar has: on its page, or on the box around its lines where these are not on the page.
 fn density_of(exemplar: &Drawing, linework: &Linework, chord_mm: f64) -> Result<Density, JobError> {
     let Some((low, high)) = exemplar.bounds_mm() else { return Err(samples::SampleError::Empty.into()) };
-    let reach_mm = low.abs().max(high.abs()).max_element() + linework.page_mm()[0].max(linework.page_mm()[1]);
-    let grid = Grid::for_extent(reach_mm).map_err(grid_error)?;
+    let page = DVec2::from(linework.page_mm());
+    let grid = Grid::for_extent(low.abs().max(high.abs()).max(page).max_element()).map_err(grid_error)?;
     let ink = samples::inked(exemplar, grid, chord_mm).map_err(grid_error)?;
+    let pen = DVec2::splat(exemplar.curves.iter().map(|curve| curve.width_mm).fold(chord_mm, f64::max));
+    let is_on_page = low.cmpge(-pen).all() && high.cmple(page + pen).all();
     // A single straight line has a box without area.
-    let size = (high - low).max(DVec2::splat(chord_mm));
-    let corners = [low, DVec2::new(low.x + size.x, low.y), low + size, DVec2::new(low.x, low.y + size.y)];
+    let (low, high) = if is_on_page { (DVec2::ZERO, page) } else { (low, high.max(low + pen)) };
+    let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
     let path = corners.iter().map(|&p| grid.snap(p)).collect::<Result<Vec<_>, _>>().map_err(grid_error)?;
     let window = Region::fill(grid, &[path], FillRule::NonZero);
-    Ok(Density::new(exemplar, &ink, &window, size))
+    Ok(Density::new(exemplar, &ink.within(&window), &window))
 }

@@ -9,7 +9,7 @@ use crate::job::bridging::BridgesReport;
 use crate::job::json;
 use crate::job::laser::LaserReport;
 use crate::job::making::{EnforcedReport, Quantities};
-use crate::job::report::{InputReport, StageTime};
+use crate::job::report::{FlatPattern, InputReport, StageTime};
 use crate::samples::LevelReport;
 use crate::verify::{MeshReport, NarrowPlaces, SvgReport};
 
@@ -48,6 +48,8 @@ pub struct FillReport {
     pub components: usize,
     /// Holes of the written files.
     pub holes: usize,
+    /// What the drawing is of a strip in space; null for what lies in the plane.
+    pub flat: Option<FlatPattern>,
     /// Counts of the exemplar on its area.
     pub exemplar_density: Density,
     /// Counts of the result on the domain.
