@@ -231,7 +231,7 @@ fn leaves() -> String {
     for stem in 0..5 {
         let x0 = 6.0 + 12.0 * f64::from(stem);
         let phase = random.unit() * TAU;
-        let x = |y: f64| x0 + 2.0 * (TAU * y / 40.0 + phase).sin();
+        let x = |y: f64| x0 + 1.2 * (TAU * y / 40.0 + phase).sin();
         let points: Vec<Point> = (0..=12).map(|i| 5.0 * f64::from(i)).map(|y| [x(y), y]).collect();
         smooth(&mut svg, &points);
         let mut side = if stem % 2 == 0 { 1.0 } else { -1.0 };
@@ -243,7 +243,7 @@ fn leaves() -> String {
             let _ = writeln!(
                 blades,
                 "<path class=\"leaf\" fill=\"#000\" stroke=\"none\" transform=\"translate({:.3} {y:.3}) rotate({degrees:.2})\" \
-                 d=\"M0 0.3C-1.9 -1.2 -1.9 -3.9 0 -5.9C1.9 -3.9 1.9 -1.2 0 0.3Z\"/>",
+                 d=\"M0 0.3C-1.7 -1.1 -1.7 -3.3 0 -5C1.7 -3.3 1.7 -1.1 0 0.3Z\"/>",
                 x(y)
             );
             side = -side;

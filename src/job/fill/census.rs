@@ -49,7 +49,15 @@ impl Density {
             let owner = ink.parts().iter().position(|part| inside(cut).is_some_and(|p| part.covers(p)));
             owner.into_iter().for_each(|owner| of_part[owner] += 1);
         }
-        let components: f64 = of_part.iter().map(|&cuts| (1.0 - 0.5 * cuts as f64).max(0.0)).sum();
+        let components: f64 = of_part
+            .iter()
+            .zip(ink.parts())
+            .map(|(&cuts, part)| match 1.0 - 0.5 * cuts as f64 {
+                // What hangs together in rings does so outside too, and is one with what is cut off.
+                share if !part.holes().is_empty() => share.max(0.0),
+                share => share,
+            })
+            .sum();
         let euler = |region: &Region| region.components() as f64 - region.holes() as f64;
         let holes = components - (euler(ink) - 0.5 * euler(&cuts));
         let border = EdgeIndex::new(window);

@@ -112,7 +112,7 @@ impl Fill {
             kept =
                 Some(InputReport { file: file.display().to_string(), sha256: linework.sha256().to_owned() });
         }
-        let learnt = density_of(&exemplar, &linework, chord_mm)?;
+        let (learnt, border_mm) = density_of(&exemplar, &linework, chord_mm)?;
         let domain_mm2 = ground.domain.area_mm2();
         let ends_wanted = (learnt.dangling_ends * domain_mm2 / census::AREA_MM2).round() as usize;
         let pattern = engine::pattern(job, &exemplar, &ground, &given, ends_wanted, &mut clock)?;
@@ -120,7 +120,7 @@ impl Fill {
         let (drawing, region, cut_mm) =
             clock.time(Stage::Map, || laid(&ground, drawing, region, chord_mm))?;
         let begin_mm = ground.begin_mm();
-        let density = Density::new(&drawing, &region, &ground.domain);
+        let density = density_inside(&drawing, &region, &ground.domain, border_mm);
         let mut fill = Self {
             page_mm: ground.page_mm,
             exemplar: InputReport {
@@ -328,8 +328,13 @@ fn laid(
     Ok((drawing, ink, cut_mm))
 }
 
-/// How much of everything an exemplar has: on its page, or on the box around its lines where these are not on the page.
-fn density_of(exemplar: &Drawing, linework: &Linework, chord_mm: f64) -> Result<Density, JobError> {
+/// The part of an exemplar's shorter side that is left out all around when it and what was made of it are counted: how a drawing ends is not what it
+/// is like inside.
+const BORDER: f64 = 0.1;
+
+/// How much of everything an exemplar has, away from the border of its page, or of the box around its lines where these are not on the page; and
+/// how wide that border is.
+fn density_of(exemplar: &Drawing, linework: &Linework, chord_mm: f64) -> Result<(Density, f64), JobError> {
     let Some((low, high)) = exemplar.bounds_mm() else { return Err(samples::SampleError::Empty.into()) };
     let page = DVec2::from(linework.page_mm());
     let grid = Grid::for_extent(low.abs().max(high.abs()).max(page).max_element()).map_err(grid_error)?;
@@ -338,8 +343,16 @@ fn density_of(exemplar: &Drawing, linework: &Linework, chord_mm: f64) -> Result<
     let is_on_page = low.cmpge(-pen).all() && high.cmple(page + pen).all();
     // A single straight line has a box without area.
     let (low, high) = if is_on_page { (DVec2::ZERO, page) } else { (low, high.max(low + pen)) };
+    let border_mm = BORDER * (high - low).min_element();
     let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
     let path = corners.iter().map(|&p| grid.snap(p)).collect::<Result<Vec<_>, _>>().map_err(grid_error)?;
     let window = Region::fill(grid, &[path], FillRule::NonZero);
-    Ok(Density::new(exemplar, &ink.within(&window), &window))
+    Ok((density_inside(exemplar, &ink.within(&window), &window, border_mm), border_mm))
+}
+
+/// How much of everything there is so far inside of an area, or on all of it where nothing is so far inside.
+fn density_inside(drawing: &Drawing, ink: &Region, area: &Region, border_mm: f64) -> Density {
+    let inner = area.offset(-border_mm, border_mm / 10.0);
+    let window = if inner.is_empty() { area } else { &inner };
+    Density::new(drawing, &ink.within(window), window)
 }
