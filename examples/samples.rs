@@ -2,26 +2,30 @@
 //!
 //!     cargo run --release --example samples -- FOLDER
 //!
-//! writes the drawings (SVG) and the plot of energies (`energies.svg`) to the folder, and prints the tables. The folder is that for temporary files if
-//! none is named.
+//! writes the drawings (SVG), the sheets that show them (`samples-1.png`, `samples-2.png`, `samples-without.png`) and the plot of energies
+//! (`samples-energies.svg`) to the folder, and prints the tables. The folder is that for temporary files if none is named.
 
 use std::error::Error;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use openwork::job::{FillBuilder, FillReport, Output, SampleOptions, SampleStart, SampleWithout};
+use resvg::tiny_skia::{Color, Pixmap, Transform};
+use usvg::Tree;
 
 const EXEMPLARS: [&str; 6] = ["branches", "scales", "maze", "waves", "leaves", "rings"];
 /// Two and a half times the area of an exemplar of 60 x 60 mm.
 const DOMAIN: &str = "rect:100x90mm";
 const SEED: u64 = 1;
+/// For densities, of which one pattern has little to count.
+const SEEDS: [u64; 5] = [1, 2, 3, 4, 5];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args_os().nth(1).map_or_else(std::env::temp_dir, PathBuf::from);
     std::fs::create_dir_all(&folder)?;
     let free: Vec<FillReport> =
         EXEMPLARS.iter().map(|name| made(&folder, name, "free", |fill| fill)).collect::<Result<_, _>>()?;
-    densities(&free);
+    densities(&folder, &free)?;
     exact(&folder, &free)?;
     without(&folder, &free)?;
     let noise = EXEMPLARS.iter().map(|name| {
@@ -34,7 +38,70 @@ fn main() -> Result<(), Box<dyn Error>> {
         })
     });
     let noise: Vec<FillReport> = noise.collect::<Result<_, _>>()?;
-    energies(&[("from patches", &free), ("from noise", &noise)], &folder.join("energies.svg"))?;
+    energies(&[("from patches", &free), ("from noise", &noise)], &folder.join("samples-energies.svg"))?;
+    for (number, names) in EXEMPLARS.chunks(3).enumerate() {
+        let row =
+            |name: &&str| vec![exemplar(name), drawn(&folder, name, "free"), drawn(&folder, name, "lace")];
+        let rows: Vec<Vec<PathBuf>> = names.iter().map(row).collect();
+        sheet(&rows, 3.0, &folder.join(format!("samples-{}.png", number + 1)))?;
+    }
+    const WAYS: [&str; 6] =
+        ["free", "without-edges", "without-robust", "without-existence", "without-orientation", "noise"];
+    let ways = |name: &str| WAYS.map(|what| drawn(&folder, name, what));
+    let rows: Vec<Vec<PathBuf>> = ["branches", "leaves", "rings"]
+        .iter()
+        .flat_map(|name| ways(name).chunks(3).map(<[_]>::to_vec).collect::<Vec<_>>())
+        .collect();
+    sheet(&rows, 2.8, &folder.join("samples-without.png"))?;
+    Ok(())
+}
+
+fn exemplar(name: &str) -> PathBuf {
+    format!(concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/samples/{}.svg"), name).into()
+}
+
+fn drawn(folder: &Path, name: &str, what: &str) -> PathBuf {
+    folder.join(format!("{name}-{what}.svg"))
+}
+
+/// Drawings in rows on one picture, all at so many pixels to the millimetre.
+fn sheet(rows: &[Vec<PathBuf>], pixels_per_mm: f32, file: &Path) -> Result<(), Box<dyn Error>> {
+    const GAP: f32 = 18.0;
+    let scale = pixels_per_mm * 25.4 / 96.0;
+    let read = |file: &PathBuf| -> Result<Tree, Box<dyn Error>> {
+        Ok(Tree::from_data(&std::fs::read(file)?, &usvg::Options::default())?)
+    };
+    let rows: Vec<Vec<Tree>> =
+        rows.iter().map(|row| row.iter().map(read).collect::<Result<_, _>>()).collect::<Result<_, _>>()?;
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let cells = |column: usize| rows.iter().filter_map(move |row| row.get(column));
+    let widths: Vec<f32> = (0..columns)
+        .map(|column| cells(column).map(|tree| tree.size().width() * scale).fold(0.0, f32::max))
+        .collect();
+    let heights: Vec<f32> = rows
+        .iter()
+        .map(|row| row.iter().map(|tree| tree.size().height() * scale).fold(0.0, f32::max))
+        .collect();
+    let size = |lengths: &[f32]| (lengths.iter().sum::<f32>() + GAP * (lengths.len() + 1) as f32) as u32;
+    let mut picture = Pixmap::new(size(&widths), size(&heights)).ok_or("no drawings")?;
+    picture.fill(Color::WHITE);
+    let mut y = GAP;
+    for (row, height) in rows.iter().zip(&heights) {
+        let mut x = GAP;
+        for (tree, width) in row.iter().zip(&widths) {
+            let left = x + (width - tree.size().width() * scale) / 2.0;
+            let top = y + (height - tree.size().height() * scale) / 2.0;
+            resvg::render(
+                tree,
+                Transform::from_row(scale, 0.0, 0.0, scale, left, top),
+                &mut picture.as_mut(),
+            );
+            x += width + GAP;
+        }
+        y += height + GAP;
+    }
+    picture.save_png(file)?;
+    println!("{}", file.display());
     Ok(())
 }
 
@@ -45,31 +112,37 @@ fn made(
     what: &str,
     adapt: impl Fn(FillBuilder) -> FillBuilder,
 ) -> Result<FillReport, Box<dyn Error>> {
-    let exemplar = format!(concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/samples/{}.svg"), name);
-    let builder = adapt(FillBuilder::new(exemplar, DOMAIN.parse()?).seed(SEED));
+    let builder = adapt(FillBuilder::new(exemplar(name), DOMAIN.parse()?).seed(SEED));
     let fill = builder.build()?.run(&mut |_| {})?;
-    let file = folder.join(format!("{name}-{what}.svg"));
-    Ok(fill.write(&[Output::file(&file)?], None, &mut |_| {})?)
+    Ok(fill.write(&[Output::file(&drawn(folder, name, what))?], None, &mut |_| {})?)
 }
 
-/// Counts for each 100 cm2 beside the exemplar's.
-fn densities(free: &[FillReport]) {
+/// Counts for each 100 cm2 beside the exemplar's, the means of several seeds.
+fn densities(folder: &Path, free: &[FillReport]) -> Result<(), Box<dyn Error>> {
     println!("| exemplar | ends | in the pattern | components | in the pattern | holes | in the pattern |");
     println!("|---|---|---|---|---|---|---|");
     for (name, report) in EXEMPLARS.iter().zip(free) {
-        let (learnt, found) = (&report.exemplar_density, &report.density);
+        let learnt = &report.exemplar_density;
+        let mut found = [0.0; 3];
+        for seed in SEEDS {
+            let seeded = made(folder, name, "seeded", |fill| fill.seed(seed))?.density;
+            for (sum, one) in found.iter_mut().zip([seeded.dangling_ends, seeded.components, seeded.holes]) {
+                *sum += one / SEEDS.len() as f64;
+            }
+        }
         let pair = |a: f64, b: f64| match a > 0.0 {
             true => format!("{a:.0} | {b:.0} ({:+.0} %)", (b / a - 1.0) * 100.0),
             false => format!("{a:.0} | {b:.0}"),
         };
         println!(
             "| {name} | {} | {} | {} |",
-            pair(learnt.dangling_ends, found.dangling_ends),
-            pair(learnt.components, found.components),
-            pair(learnt.holes, found.holes)
+            pair(learnt.dangling_ends, found[0]),
+            pair(learnt.components, found[1]),
+            pair(learnt.holes, found[2])
         );
     }
     println!();
+    Ok(())
 }
 
 /// Exact counts, with what was changed for them.
