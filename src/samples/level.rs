@@ -88,7 +88,8 @@ pub struct LevelReport {
     pub energies: Vec<f64>,
     /// The same for each sample.
     pub energies_per_sample: Vec<f64>,
-    /// The last of these with nothing left out of the measure, so that results that were made without a part of the method can be compared.
+    /// That of what was kept, the least of these, with nothing left out of the measure, so that results that were made without a part of the method
+    /// can be compared.
     pub full_energy_per_sample: f64,
     /// Seconds in all.
     #[serde(skip)]
@@ -114,11 +115,13 @@ impl LevelReport {
         }
     }
 
-    /// Adds the energy of what was found.
-    pub(super) fn tell(&mut self, graph: &Graph, found: &[Found], area: &Area) {
+    /// Adds the energy of what was found, and gives it for each sample.
+    pub(super) fn tell(&mut self, graph: &Graph, found: &[Found], area: &Area) -> f64 {
         let energy = energy(graph, found, area);
+        let each = energy / found.len().max(1) as f64;
         self.energies.push(energy);
-        self.energies_per_sample.push(energy / found.len().max(1) as f64);
+        self.energies_per_sample.push(each);
+        each
     }
 
     pub(super) fn finish(&mut self, graph: &Graph, neighbours: f64) {

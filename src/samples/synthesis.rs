@@ -86,6 +86,7 @@ pub fn synthesize(
 }
 
 /// The output between iterations.
+#[derive(Clone)]
 struct Output {
     graph: Graph,
     /// Its elements.
@@ -185,40 +186,46 @@ impl Run<'_> {
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<LevelReport, SampleError> {
         let mut report = LevelReport::new(self.level, self.source);
-        for iteration in 0..self.options.iterations {
+        // Assignments may make it worse in the end; what was best stays.
+        let mut best: Option<(f64, Output)> = None;
+        for iteration in 0..=self.options.iterations {
             progress(self.number, iteration);
-            let is_last = iteration + 1 == self.options.iterations;
-            let passes = self.options.passes[usize::from(iteration > 0)];
+            let is_last = iteration == self.options.iterations;
+            let passes = if is_last { 1 } else { self.options.passes[usize::from(iteration > 0)] };
             let began = Instant::now();
             let near = self.neighbourhoods(&output.graph)?;
             let found = self.found(output, &near, passes, iteration);
-            let matchings = {
-                let likeness = self.likeness(&output.graph, &near);
-                matchings(&likeness, &found)
-            };
             report.search_seconds += began.elapsed().as_secs_f64();
-            report.tell(&output.graph, &found, self.area);
-            self.assign(output, &matchings, &found, iteration, is_last);
+            let energy = report.tell(&output.graph, &found, self.area);
+            if best.as_ref().is_none_or(|(least, _)| energy < *least) {
+                let found = found.iter().map(|&(input, _)| Some(input)).collect();
+                best = Some((energy, Output { found, ..output.clone() }));
+            }
+            if is_last {
+                break;
+            }
+            let matchings = matchings(&self.likeness(&output.graph, &near), &found);
+            self.assign(output, &matchings, &found, iteration);
             if output.graph.samples.is_empty() {
                 return Err(SampleError::NoRoom);
             }
         }
+        if let Some((_, kept)) = best {
+            *output = kept;
+        }
         let near = self.neighbourhoods(&output.graph)?;
-        let found = self.found(output, &near, 1, self.options.iterations);
-        report.tell(&output.graph, &found, self.area);
-        report.full_energy_per_sample = self.full_energy(output, &near, &found) / found.len() as f64;
+        report.full_energy_per_sample = self.full_energy(output, &near) / output.graph.samples.len() as f64;
         report.finish(&output.graph, near.mean());
         Ok(report)
     }
 
     /// The energy by the whole measure of what was perhaps made without a part of it.
-    fn full_energy(&self, output: &Output, near: &Neighbourhoods, found: &[Found]) -> f64 {
-        if self.options.without == Without::default() {
-            return super::level::energy(&output.graph, found, self.area);
-        }
+    fn full_energy(&self, output: &Output, near: &Neighbourhoods) -> f64 {
         let options = &Options { without: Without::default(), ..self.options.clone() };
+        // What the search measures by did not change, so a pass is enough.
+        let passes = if self.options.without == Without::default() { 1 } else { options.passes[0] };
         let run = Run { options, ..*self };
-        let found = run.found(output, near, options.passes[0], options.iterations + 1);
+        let found = run.found(output, near, passes, options.iterations + 1);
         super::level::energy(&output.graph, &found, self.area)
     }
 
@@ -241,18 +248,13 @@ impl Run<'_> {
     }
 
     /// The assignment step: positions, edges, directions, and which samples there are.
-    fn assign(
-        &self,
-        output: &mut Output,
-        matchings: &[Matching],
-        found: &[Found],
-        iteration: usize,
-        is_last: bool,
-    ) {
+    fn assign(&self, output: &mut Output, matchings: &[Matching], found: &[Found], iteration: usize) {
         let graph = &mut output.graph;
         let moves = positions::moves(graph, self.source, matchings, self.area);
         let keeps_existence = self.options.without.existence;
         existence::believe(graph, matchings);
+        // None for the last search, which would find them without edges.
+        let is_last = iteration + 1 == self.options.iterations;
         let fresh = match keeps_existence || is_last {
             true => Vec::new(),
             false => existence::missing(
