@@ -6,7 +6,9 @@ mod common;
 use std::fmt::Write as _;
 
 use common::{Finished, Room};
-use openwork::planar::{Grid, Region};
+use openwork::job::FillBuilder;
+use openwork::planar::{Grid, Region, Tolerances};
+use openwork::samples::{Drawing, inked};
 use openwork::verify::{SvgReport, read_svg};
 use serde_json::Value;
 
@@ -163,8 +165,49 @@ fn what_is_kept_stays() {
         assert!(covers(&found.region, x + 1.0, y + 1.0), "{x} {y}");
     }
     assert_eq!(report["kept"]["file"], "begun.svg");
-    // A box of the exemplar goes where it is told to.
-    fill(&room, "twigs.svg --domain rect:90x60mm --clone 0,0,30x20->40,30");
+}
+
+#[test]
+fn a_box_of_the_exemplar_goes_where_it_is_told_to() {
+    let room = room();
+    let (found, _) = fill(&room, "twigs.svg --domain rect:90x60mm --iterations 0 --clone 0,0,40x30->45,25");
+    // Two stems that are wholly in the box, by their feet in the exemplar.
+    for (x, y) in [(14.0, 7.0), (28.0, 6.0)] {
+        for up in 0..9 {
+            let (x, y) = (x + 45.0 + 1.0, y + f64::from(up) + 25.0 + 1.0);
+            assert!(covers(&found.region, x, y), "{x} {y}");
+        }
+    }
+}
+
+#[test]
+fn what_is_kept_comes_out_exactly_and_counts() {
+    let room = room();
+    // One goes on beside the domain, and another crosses it.
+    room.draw("begun.svg", &format!("<path d='M10 50C30 20 60 20 112 50' {PEN}/><path d='M20 5V55' {PEN}/>"));
+    let filled = FillBuilder::new(room.path("twigs.svg"), "rect:90x60mm".parse().unwrap())
+        .keep(room.path("begun.svg"))
+        .components(1)
+        .build()
+        .unwrap()
+        .run(&mut |_| {})
+        .unwrap();
+    let region = filled.region();
+    let curves = filled.drawing().curves.iter().rev().take(2).cloned().collect();
+    let begun = Drawing { curves, elements: Vec::new() };
+    let ink = inked(&begun, region.grid(), 0.25 * Tolerances::default().chord_mm()).unwrap();
+    // But for steps of the grid where outlines cross.
+    let lost_mm2 = ink.without(region).area_mm2();
+    assert!(ink.area_mm2() > 100.0 && lost_mm2 < 1e-6, "{lost_mm2}");
+    assert_eq!(region.components(), 1);
+    // The page has room for what is beside the domain.
+    let (low, high) = region.bounds_mm().unwrap();
+    assert!(low.min_element() > 0.98 && (high.x - 113.5).abs() < 0.01, "{low} {high}");
+    room.refuses(
+        "fill twigs.svg --domain band --along line:90mm --width 20mm --keep begun.svg -o out.svg",
+        2,
+        &["--keep", "beside the strip", "lower left corner"],
+    );
 }
 
 #[test]
@@ -218,7 +261,7 @@ fn what_cannot_be_learnt_from() {
     room.refuses(
         "fill one.svg --domain rect:90x60mm --radii 12mm --spacing 8mm -o out.svg",
         2,
-        &["has 2 sample(s)", "draw more of it"],
+        &["one.svg: the exemplar has 2 sample(s)", "draw more of it"],
     );
     refuses("dashed.svg", &["<path id=\"d\"> on line 2", "dashed", "Convert to Dashes"]);
     refuses("stretched.svg", &["<path id=\"s\"> on line 2", "stretches", "Stroke to Path"]);

@@ -101,7 +101,7 @@ pub(super) struct FillArguments {
     /// How it begins: patches of the exemplar, each suiting those around it, or noise, single samples
     #[arg(long, value_name = "WAY", value_parser = ["patches", "noise"], default_value = "patches")]
     start: String,
-    /// Draw all strokes so wide [default: as wide as the exemplar's]
+    /// Draw all strokes so wide; those of --keep stay as they are [default: as wide as the exemplar's]
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     stroke: Option<f64>,
     /// A stroke so wide along the border of the domain, which belongs to the pattern

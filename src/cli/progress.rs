@@ -1,5 +1,6 @@
 //! Progress on a terminal.
 
+use std::borrow::Cow;
 use std::io::IsTerminal;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -70,12 +71,15 @@ impl Progress {
 }
 
 /// What is done in a stage.
-fn words(stage: Stage) -> &'static str {
-    match stage {
+fn words(stage: Stage) -> Cow<'static, str> {
+    if let Stage::Iterate { level, iteration } = stage {
+        return format!("synthesizing: level {level}, iteration {iteration}").into();
+    }
+    Cow::Borrowed(match stage {
         Stage::Read => "reading the exemplar",
         Stage::Slice => "cutting it into pieces",
         Stage::Solve => "searching for a sequence",
-        Stage::Synthesize => "synthesizing",
+        Stage::Synthesize | Stage::Iterate { .. } => "synthesizing",
         Stage::Complete => "joining and opening",
         Stage::Fit => "fitting the pieces",
         Stage::Map => "mapping along the curve",
@@ -86,7 +90,7 @@ fn words(stage: Stage) -> &'static str {
         Stage::Stl => "building the solid",
         Stage::Png => "painting the picture",
         Stage::Verify => "reading the files again and counting",
-    }
+    })
 }
 
 impl Drop for Progress {

@@ -273,8 +273,9 @@ impl Parts {
         let path = shape.to_mm * &shape.path;
         let bounds = path.control_box();
         let limit = Grid::MAX_EXTENT_MM;
-        if let Some(value) =
-            [bounds.x0, bounds.y0, bounds.x1, bounds.y1].into_iter().find(|v| !(v.abs() <= limit))
+        if let Some(value) = [bounds.x0, bounds.y0, bounds.x1, bounds.y1]
+            .into_iter()
+            .find(|v| !v.is_finite() || v.abs() > limit)
         {
             return Err(ExemplarFault::Coordinate { place: shape.place.clone(), value, limit, unit: "mm" });
         }

@@ -56,6 +56,14 @@ pub enum JobError {
     /// No pattern can be synthesized.
     #[error(transparent)]
     Samples(#[from] SampleError),
+    /// An exemplar of curves and elements has too little in it, or too much.
+    #[error("{}: {error}", file.display())]
+    Unlearnt {
+        /// The exemplar's file.
+        file: PathBuf,
+        /// What it has.
+        error: SampleError,
+    },
     /// A pattern cannot be completed.
     #[error("{0}. Nothing was written")]
     Complete(#[from] CompleteError),
@@ -182,6 +190,7 @@ impl JobError {
             | Self::Size(_)
             | Self::Tolerances(_)
             | Self::Samples(_)
+            | Self::Unlearnt { .. }
             | Self::Weights(_)
             | Self::Option { .. }
             | Self::Sheet(_)

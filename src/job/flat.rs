@@ -165,13 +165,6 @@ impl Flat<'_> {
             holes: Some(region.holes().into()),
             ..Expected::default()
         };
-        let raise = |notes: &mut Vec<String>| match self.lain {
-            Some(Lain { part, map }) => {
-                notes.extend(space::relief_notes(map, tolerances.chord_mm()));
-                space::solid(part, map, tolerances.chord_mm())
-            }
-            None => print.solid(region, thickness_mm, tolerances.chord_mm(), notes),
-        };
         let counts = self.lain.map_or_else(|| Counts::of(region), |lain| lain.part.counts);
         let standing = Expected {
             components: Some(counts.components.into()),
@@ -208,7 +201,18 @@ impl Flat<'_> {
                     .map_err(|mismatch| too_narrow(mismatch, blamed, enforce || joined.is_some()))
                 })
             },
-            |clock| Raised::new(wanted, clock, raise),
+            |clock| {
+                let asked_mm = tolerances.chord_mm();
+                match self.lain {
+                    Some(Lain { part, map }) => Raised::bent(wanted, clock, asked_mm, |chord_mm, notes| {
+                        notes.extend(space::relief_notes(map, asked_mm));
+                        space::solid(part, map, chord_mm)
+                    }),
+                    None => {
+                        Raised::new(wanted, clock, |notes| print.solid(region, thickness_mm, asked_mm, notes))
+                    }
+                }
+            },
         );
         let (narrow_places, raised) = (narrow_places?, raised?);
         let (mut solid, mut drawn) = (None, None);

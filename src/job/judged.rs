@@ -3,10 +3,9 @@
 //! The promise at the machine's tolerance is checked on the drawing, so one is always made. Excluded: cut lines, which are
 //! judged as files ([`super::laser`]).
 
-use std::cell::Cell;
 use std::path::PathBuf;
 
-use super::band::{Band, FINER_CHORDS};
+use super::band::Band;
 use super::choice::Choice;
 use super::error::JobError;
 use super::flat::{file_name, name};
@@ -19,15 +18,12 @@ use super::space;
 use super::stage::{Clock, Stage};
 use super::surface::{Ground, MergedCounts};
 use crate::export::{self, MeshDocument, SvgDocument, SvgOptions};
-use crate::fabricate::{Counts, FabricateError, Solid};
+use crate::fabricate::{Counts, Solid};
 use crate::planar::{Region, Tolerances};
 use crate::verify::{self, Expected, Mismatch, NarrowPlaces, Narrowest, SvgReport};
 
 /// The part of the chord error that is for fitting curves to the drawing.
 const SVG_SHARE: f64 = 0.5;
-
-/// Solids of more facets are not made again with finer ones: each takes several times as long.
-const MOST_FACETS: usize = 300_000;
 
 /// What a drawing without a file is called.
 const DRAWING: &str = "the drawing";
@@ -200,36 +196,12 @@ impl Band {
                 || ((is_leaning || self.space.is_some()) && !options.laser.carve),
         };
         let asked_mm = self.job.tolerances.chord_mm();
-        let facets = Cell::new(0);
-        let mut raised = Raised::new(wanted, clock, |notes| {
-            let solid = self.solid_within(asked_mm, notes)?;
-            facets.set(solid.triangles().len());
-            Ok(solid)
-        });
-        // On a bend, facets of ink on both sides of a gap that is finer than they are may cross.
-        let finer = FINER_CHORDS.iter().filter(|_| self.space.is_some()).map(|part| part * asked_mm);
-        for chord_mm in finer {
-            if !is_faulty(&raised) || facets.get() > MOST_FACETS {
-                break;
+        match self.space.is_some() {
+            true => {
+                Raised::bent(wanted, clock, asked_mm, |chord_mm, notes| self.solid_within(chord_mm, notes))
             }
-            raised = Raised::new(wanted, clock, |notes| {
-                notes.push(format!(
-                    "facets are within {chord_mm:.4} mm instead of {asked_mm:.4} mm, at which some would have crossed"
-                ));
-                let solid = self.solid_within(chord_mm, notes)?;
-                facets.set(solid.triangles().len());
-                Ok(solid)
-            });
+            false => Raised::new(wanted, clock, |notes| self.solid_within(asked_mm, notes)),
         }
-        raised.map_err(|error| match error {
-            JobError::Mismatch { file, mismatch: mismatch @ Mismatch::Faults { .. }, .. }
-                if self.space.is_some() =>
-            {
-                let remedy = "; ink or gaps are too fine for facets there: use a larger --width, or --min-feature and --min-gap, which say where that is";
-                JobError::Mismatch { file, mismatch, remedy: remedy.to_owned() }
-            }
-            error => error,
-        })
     }
 
     /// What files say of the solid.
@@ -290,15 +262,6 @@ impl Band {
         };
         JobError::Mismatch { file, mismatch, remedy }
     }
-}
-
-/// Whether a solid was made that is not sound.
-fn is_faulty(raised: &Result<Raised, JobError>) -> bool {
-    matches!(
-        raised,
-        Err(JobError::Mismatch { mismatch: Mismatch::Faults { .. }, .. }
-            | JobError::Fabricate(FabricateError::Rounding { .. } | FabricateError::Facets { .. }))
-    )
 }
 
 /// The output that is named when the part is at fault.

@@ -3,14 +3,18 @@
 //! It takes as long as the drawing and knows nothing of it, so both are made side by side (see
 //! [`Clock::both`](super::stage::Clock::both)). Excluded: how a solid is made ([`super::print`]), and the names of files.
 
+use super::band::FINER_CHORDS;
 use super::error::{JobError, OURS};
 use super::flat::name;
 use super::output::{Format, Output};
 use super::print::mesh;
 use super::stage::{Clock, Stage};
 use crate::export::MeshDocument;
-use crate::fabricate::Solid;
+use crate::fabricate::{FabricateError, Solid};
 use crate::verify::{self, Expected, MeshReport, Mismatch};
+
+/// Solids of more facets are not made again with finer ones: each takes several times as long.
+const MOST_FACETS: usize = 300_000;
 
 /// The unit that a 3MF must name: many programs ask, or guess, where none is named.
 const UNIT: &str = "millimeter";
@@ -74,6 +78,45 @@ impl Raised {
         Ok(Self { solid: Some(solid), ..raised })
     }
 
+    /// The same of a solid that is bent, for which `make` is told how near its facets have to be. On a bend, facets of ink on both sides of a
+    /// gap that is finer than they are may cross; then it is made again with finer ones.
+    ///
+    /// # Errors
+    /// As [`Raised::new`].
+    pub(super) fn bent(
+        wanted: Wanted<'_>,
+        clock: &mut Clock<'_>,
+        asked_mm: f64,
+        make: impl Fn(f64, &mut Vec<String>) -> Result<Solid, JobError>,
+    ) -> Result<Self, JobError> {
+        let mut facets = 0;
+        let mut raised = Self::new(wanted, clock, |notes| {
+            let solid = make(asked_mm, notes)?;
+            facets = solid.triangles().len();
+            Ok(solid)
+        });
+        for chord_mm in FINER_CHORDS.map(|part| part * asked_mm) {
+            if !is_faulty(&raised) || facets > MOST_FACETS {
+                break;
+            }
+            raised = Self::new(wanted, clock, |notes| {
+                notes.push(format!(
+                    "facets are within {chord_mm:.4} mm instead of {asked_mm:.4} mm, at which some would have crossed"
+                ));
+                let solid = make(chord_mm, notes)?;
+                facets = solid.triangles().len();
+                Ok(solid)
+            });
+        }
+        raised.map_err(|error| match error {
+            JobError::Mismatch { file, mismatch: mismatch @ Mismatch::Faults { .. }, .. } => {
+                let remedy = "; ink or gaps are too fine for facets there: use a larger --width, or --min-feature and --min-gap, which say where that is";
+                JobError::Mismatch { file, mismatch, remedy: remedy.to_owned() }
+            }
+            error => error,
+        })
+    }
+
     /// Whether each of `outputs` that holds a solid has its file.
     pub(super) fn is_for(&self, outputs: &[Output]) -> bool {
         outputs.iter().all(|output| !output.format().is_solid() || self.file(output.format()).is_some())
@@ -114,4 +157,13 @@ fn check(output: &Output, bytes: &[u8], solid: &Solid, expected: &Expected) -> R
     }
     report.is_like(solid.facets()).map_err(|found| mismatch(found.into(), OURS))?;
     Ok(report)
+}
+
+/// Whether a solid was made that is not sound.
+fn is_faulty(raised: &Result<Raised, JobError>) -> bool {
+    matches!(
+        raised,
+        Err(JobError::Mismatch { mismatch: Mismatch::Faults { .. }, .. }
+            | JobError::Fabricate(FabricateError::Rounding { .. } | FabricateError::Facets { .. }))
+    )
 }

@@ -15,6 +15,13 @@ pub enum Stage {
     Solve,
     /// Samples of the output, searched and assigned in turn.
     Synthesize,
+    /// An iteration of that begins, counted from 1 at each level; levels are counted from 1, the coarsest.
+    Iterate {
+        /// The level.
+        level: usize,
+        /// The iteration.
+        iteration: usize,
+    },
     /// Curves through samples, joined and opened.
     Complete,
     /// Offsets and warps.
@@ -38,7 +45,7 @@ pub enum Stage {
 }
 
 impl Stage {
-    /// All stages.
+    /// All stages, without the iterations of one.
     pub const ALL: [Self; 14] = [
         Self::Read,
         Self::Slice,
@@ -62,7 +69,7 @@ impl Stage {
             Self::Read => "read",
             Self::Slice => "slice",
             Self::Solve => "solve",
-            Self::Synthesize => "synthesize",
+            Self::Synthesize | Self::Iterate { .. } => "synthesize",
             Self::Complete => "complete",
             Self::Fit => "fit",
             Self::Map => "map",
@@ -90,9 +97,18 @@ impl<'a> Clock<'a> {
 
     /// Runs one stage; a stage that is run again adds to its time.
     pub(super) fn time<T>(&mut self, stage: Stage, work: impl FnOnce() -> T) -> T {
+        self.time_telling(stage, |_| work())
+    }
+
+    /// The same for work that tells of what it is at.
+    pub(super) fn time_telling<T>(
+        &mut self,
+        stage: Stage,
+        work: impl FnOnce(&mut dyn FnMut(Stage)) -> T,
+    ) -> T {
         (self.listener)(stage);
         let start = Instant::now();
-        let result = work();
+        let result = work(self.listener);
         let milliseconds = start.elapsed().as_secs_f64() * 1e3;
         self.add(StageTime { stage: stage.name(), milliseconds });
         result

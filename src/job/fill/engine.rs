@@ -1,14 +1,17 @@
 //! The second engine as a job uses it: synthesis, completion, and what is told of them.
 
+use std::path::Path;
+
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::FillJob;
-use super::ground::Ground;
+use super::ground::{Ground, grid_error};
 use crate::job::error::JobError;
 use crate::job::stage::{Clock, Stage};
+use crate::planar::{Contour, Region};
 use crate::samples::{
-    self, ChangeKind, CompleteError, CompleteOptions, Drawing, Element, Given, LevelReport,
+    self, ChangeKind, CompleteError, CompleteOptions, Drawing, Element, Given, LevelReport, SampleError,
 };
 
 /// The part of the chord error that strokes may spend while they are completed.
@@ -50,7 +53,7 @@ impl ChangeReport {
 pub(super) struct Pattern {
     pub(super) drawing: Drawing,
     /// What it covers.
-    pub(super) region: crate::planar::Region,
+    pub(super) region: Region,
     pub(super) changes: Vec<ChangeReport>,
     pub(super) levels: Vec<LevelReport>,
     /// What could not be met by edges of the pattern alone.
@@ -70,13 +73,17 @@ pub(super) fn pattern(
     clock: &mut Clock<'_>,
 ) -> Result<Pattern, JobError> {
     let constants = job.constants(exemplar);
-    let synthesis = clock.time(Stage::Synthesize, || {
-        samples::synthesize(exemplar, &ground.area, &constants, given, &mut |_, _| {})
-    })?;
+    let synthesis = clock.time_telling(Stage::Synthesize, |tell| {
+        let mut progress =
+            |level, iteration| tell(Stage::Iterate { level: level + 1, iteration: iteration + 1 });
+        samples::synthesize(exemplar, &ground.area, &constants, given, &mut progress)
+    });
+    let synthesis = synthesis.map_err(|error| unlearnt(&job.options.exemplar, error))?;
     let placed = synthesis.elements.placed.iter().map(|placed| Element {
         contours: synthesis.elements.classes[placed.class as usize].drawn(&placed.similarity),
     });
-    let elements: Vec<Element> = placed.chain(given.drawing.elements.iter().cloned()).collect();
+    let mut elements: Vec<Element> = placed.collect();
+    let own_elements = elements.len();
     let tolerances = &job.options.making.tolerances;
     let completing = CompleteOptions {
         chord_mm: INK_SHARE * tolerances.chord_mm(),
@@ -86,15 +93,14 @@ pub(super) fn pattern(
         ends_wanted: Some(ends_wanted),
         ..CompleteOptions::default()
     };
+    // What is kept is ink as it was drawn, and the pattern's strokes through its samples would be a second one.
+    let kept = samples::inked(&given.drawing, ground.area.region().grid(), completing.chord_mm);
+    elements.extend(as_elements(&kept.map_err(grid_error)?));
+    let mut graph = synthesis.graph;
+    let is_given: Vec<bool> = graph.samples.iter().map(|sample| sample.is_given).collect();
+    graph.edges.retain(|edge| !edge.ends.iter().all(|&end| is_given[end]));
     let completed = clock.time(Stage::Complete, || {
-        samples::complete(
-            &synthesis.graph,
-            &elements,
-            &ground.area,
-            &constants,
-            &job.options.goal,
-            &completing,
-        )
+        samples::complete(&graph, &elements, &ground.area, &constants, &job.options.goal, &completing)
     });
     let (completed, lacking) = match completed {
         Ok(completed) => (completed, None),
@@ -105,11 +111,31 @@ pub(super) fn pattern(
         }
         Err(error) => return Err(error.into()),
     };
+    let mut drawing = completed.drawing;
+    drawing.elements.truncate(own_elements);
+    drawing.elements.extend_from_slice(&given.drawing.elements);
+    drawing.curves.extend_from_slice(&given.drawing.curves);
     Ok(Pattern {
-        drawing: completed.drawing,
+        drawing,
         region: completed.region,
         changes: completed.changes.iter().map(ChangeReport::new).collect(),
         levels: synthesis.levels,
         lacking,
     })
+}
+
+/// Ink as shapes, one for each component.
+fn as_elements(ink: &Region) -> impl Iterator<Item = Element> + '_ {
+    let in_mm = |contour: &Contour| contour.points().iter().map(|&p| ink.grid().to_mm(p)).collect();
+    ink.parts().iter().map(move |part| Element { contours: part.contours().map(in_mm).collect() })
+}
+
+/// The error of the engine, with the file where that is what has to change.
+pub(super) fn unlearnt(exemplar: &Path, error: SampleError) -> JobError {
+    match error {
+        SampleError::Empty | SampleError::Sparse { .. } | SampleError::Crowded { .. } => {
+            JobError::Unlearnt { file: exemplar.to_owned(), error }
+        }
+        _ => error.into(),
+    }
 }

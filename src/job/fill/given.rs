@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use glam::DVec2;
-use kurbo::{Affine, PathEl};
+use kurbo::{PathEl, Shape};
 use rustc_hash::FxHashMap;
 
 use super::builder::refused;
@@ -37,17 +37,12 @@ pub(super) fn read(
     Ok((drawing, linework))
 }
 
-/// Strokes that are there already, moved by `shift_mm`.
+/// Strokes and shapes that are there already, as wide as they are drawn, where their file has them.
 ///
 /// # Errors
 /// As [`Linework::read`]; and [`JobError::Option`] for a file without strokes, and for strokes that lie upon each other.
-pub(super) fn read_kept(
-    file: &Path,
-    chord_mm: f64,
-    stroke_mm: Option<f64>,
-    shift_mm: DVec2,
-) -> Result<(Drawing, Linework), JobError> {
-    let (mut drawing, linework) = read(file, chord_mm, stroke_mm)?;
+pub(super) fn read_kept(file: &Path, chord_mm: f64) -> Result<(Drawing, Linework), JobError> {
+    let (drawing, linework) = read(file, chord_mm, None)?;
     let refuse =
         |found: String, wanted| Err(refused("--keep", format!("{}: {found}", file.display()), wanted));
     if drawing.curves.is_empty() {
@@ -69,11 +64,19 @@ pub(super) fn read_kept(
             "delete one of them, or move them apart; strokes may cross and end on each other",
         );
     }
-    let shift = Affine::translate((shift_mm.x, shift_mm.y));
-    drawing.curves.iter_mut().for_each(|curve| curve.path.apply_affine(shift));
-    let points = drawing.elements.iter_mut().flat_map(|element| element.contours.iter_mut().flatten());
-    points.for_each(|p| *p += shift_mm);
     Ok((drawing, linework))
+}
+
+/// Lower left and upper right corner of the ink of a drawing, in millimetres; `None` if there is none.
+pub(super) fn ink_bounds_mm(drawing: &Drawing) -> Option<(DVec2, DVec2)> {
+    let of_curve = |curve: &Curve| {
+        let (bounds, half_mm) = (curve.path.bounding_box(), 0.5 * curve.width_mm);
+        [DVec2::new(bounds.x0, bounds.y0) - half_mm, DVec2::new(bounds.x1, bounds.y1) + half_mm]
+    };
+    let elements = drawing.elements.iter().flat_map(|element| element.contours.iter().flatten().copied());
+    let mut points = drawing.curves.iter().flat_map(of_curve).chain(elements);
+    let first = points.next()?;
+    Some(points.fold((first, first), |(low, high), p| (low.min(p), high.max(p))))
 }
 
 /// The first two strokes that run upon each other, by their numbers from 0, and where.

@@ -17,7 +17,7 @@ use crate::job::error::JobError;
 use crate::job::part::MARGIN_MM;
 use crate::job::report::InputReport;
 use crate::planar::{FillRule, Grid, GridError, GridPoint, Region};
-use crate::samples::{Area, Curve, Drawing, Element};
+use crate::samples::{self, Area, Curve, Drawing, Element};
 
 /// The part of the chord error for each: flattening curves before they are mapped, and mapping them.
 const MAP_SHARE: f64 = 0.25;
@@ -34,6 +34,8 @@ pub(super) struct Ground {
     pub(super) shift_mm: DVec2,
     /// The file that it comes from, if it does.
     pub(super) input: Option<InputReport>,
+    /// Whether it is a strip that is laid along a curve, by this program or by who bends it.
+    is_laid: bool,
     strip: Option<Strip>,
 }
 
@@ -97,7 +99,7 @@ impl Ground {
 
     fn plane(domain: Region, page_mm: DVec2, shift_mm: DVec2, pen_mm: f64, chord_mm: f64) -> Self {
         let area = Area::new(inset(&domain, pen_mm, chord_mm));
-        Self { area, domain, page_mm, shift_mm, input: None, strip: None }
+        Self { area, domain, page_mm, shift_mm, input: None, is_laid: false, strip: None }
     }
 
     fn band(job: &FillJob, pen_mm: f64, chord_mm: f64) -> Result<Self, JobError> {
@@ -139,6 +141,7 @@ impl Ground {
             page_mm,
             shift_mm,
             input,
+            is_laid: true,
             strip: Some(Strip::Along { map, shift_mm: on_page }),
         })
     }
@@ -152,7 +155,7 @@ impl Ground {
         let page_mm = size + 2.0 * MARGIN_MM;
         let domain = filled(grid(page_mm)?, &[rectangle(corner, corner + size)])?;
         if !sheet.is_closed() {
-            return Ok(Self::plane(domain, page_mm, corner, pen_mm, chord_mm));
+            return Ok(Self { is_laid: true, ..Self::plane(domain, page_mm, corner, pen_mm, chord_mm) });
         }
         let beyond = 0.5 * length_mm;
         let ends = [DVec2::new(-beyond, low), DVec2::new(length_mm + beyond, high)];
@@ -160,7 +163,54 @@ impl Ground {
         let area = Area::rolled(inset(&strip, pen_mm, chord_mm), length_mm);
         let on_page = corner - DVec2::new(0.0, low);
         let strip = Some(Strip::Open { length_mm, shift_mm: on_page });
-        Ok(Self { area, domain, page_mm, shift_mm: DVec2::new(0.0, low), input: None, strip })
+        Ok(Self { area, domain, page_mm, shift_mm: DVec2::new(0.0, low), input: None, is_laid: true, strip })
+    }
+
+    /// The same with room on its page for ink between two corners, and by how much everything is moved for that.
+    ///
+    /// # Errors
+    /// [`JobError::Option`] where the area is a strip, beside which there is nothing.
+    pub(super) fn with_room_for(
+        self,
+        (low, high): (DVec2, DVec2),
+        pen_mm: f64,
+        chord_mm: f64,
+    ) -> Result<(Self, DVec2), JobError> {
+        if self.is_laid {
+            let (from, to) = self.area.region().bounds_mm().unwrap_or_default();
+            let beyond = DVec2::splat(0.5 * pen_mm + chord_mm);
+            let is_within = low.cmpge(from - beyond).all() && high.cmple(to + beyond).all();
+            let [low, high] = [low, high].map(|p| p - self.shift_mm);
+            return is_within.then_some((self, DVec2::ZERO)).ok_or_else(|| {
+                let found = format!(
+                    "there is ink from ({:.2}, {:.2}) to ({:.2}, {:.2}) mm, some of it beside the strip of the band",
+                    low.x, low.y, high.x, high.y
+                );
+                refused("--keep", found, "draw it within the strip, whose lower left corner is (0, 0)")
+            });
+        }
+        let margin = DVec2::splat(MARGIN_MM);
+        let by = (margin - low).max(DVec2::ZERO);
+        let page_mm = self.page_mm.max(high + margin) + by;
+        if page_mm == self.page_mm {
+            return Ok((self, by));
+        }
+        let domain = self.domain.placed(grid(page_mm)?, |p| p + by).map_err(grid_error)?;
+        let plane = Self::plane(domain, page_mm, self.shift_mm + by, pen_mm, chord_mm);
+        Ok((Self { input: self.input, ..plane }, by))
+    }
+
+    /// What is kept, as it lies on the page. Of a closed strip in space, which is cut open somewhere, there is none.
+    ///
+    /// # Errors
+    /// [`JobError`] for coordinates that are too large.
+    pub(super) fn kept(&self, drawing: &Drawing, chord_mm: f64) -> Result<Region, JobError> {
+        let inked = |drawing: &Drawing| samples::inked(drawing, self.grid(), chord_mm).map_err(grid_error);
+        match &self.strip {
+            None => inked(drawing),
+            Some(Strip::Open { .. }) => Ok(Region::empty(self.grid())),
+            Some(Strip::Along { .. }) => Ok(self.clipped(&inked(&self.laid(drawing, chord_mm))?)),
+        }
     }
 
     /// Whether the pattern is made on a strip, and laid along a curve.
@@ -233,7 +283,7 @@ impl Ground {
 }
 
 /// A drawing elsewhere.
-fn moved(drawing: &Drawing, by: DVec2) -> Drawing {
+pub(super) fn moved(drawing: &Drawing, by: DVec2) -> Drawing {
     let curve = |curve: &Curve| Curve {
         path: Affine::translate((by.x, by.y)) * &curve.path,
         width_mm: curve.width_mm,

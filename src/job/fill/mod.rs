@@ -18,11 +18,13 @@ pub use clone::CloneSpec;
 pub use engine::ChangeReport;
 pub use report::FillReport;
 
+use std::path::Path;
+
 use glam::DVec2;
 
 use self::builder::refused;
 use self::engine::Pattern;
-use self::ground::{Ground, grid_error};
+use self::ground::{Ground, grid_error, moved};
 use self::sheet::Sheet;
 use super::bridging::{self, BridgesReport};
 use super::error::JobError;
@@ -35,7 +37,7 @@ use super::stage::{Clock, Stage};
 use crate::exemplar::Linework;
 use crate::fabricate::Counts;
 use crate::planar::{FillRule, Grid, Region};
-use crate::samples::{self, Drawing, Given};
+use crate::samples::{self, Drawing, Given, SampleError};
 use crate::topology::Wanted;
 
 pub use crate::samples::{
@@ -98,27 +100,33 @@ impl Fill {
         notes.extend(sheet.as_ref().and_then(|sheet| sheet.note.clone()));
         let pens_mm = exemplar.curves.iter().map(|curve| curve.width_mm);
         let pen_mm = pens_mm.fold(options.frame_mm.unwrap_or(0.0), f64::max);
-        let ground = clock.time(Stage::Read, || Ground::new(job, sheet.as_ref(), pen_mm))?;
-        let mut given = Given {
-            clones: options.clones.iter().map(|clone| clone.placed(ground.shift_mm)).collect(),
-            ..Given::default()
-        };
+        let mut ground = clock.time(Stage::Read, || Ground::new(job, sheet.as_ref(), pen_mm))?;
+        let mut given = Given::default();
         let mut kept = None;
         if let Some(file) = &options.keep {
-            let read = || given::read_kept(file, chord_mm, options.stroke_mm, ground.shift_mm);
-            let (drawing, linework) = clock.time(Stage::Read, read)?;
-            given.drawing = drawing;
+            let (drawing, linework) = clock.time(Stage::Read, || given::read_kept(file, chord_mm))?;
+            given.drawing = moved(&drawing, ground.shift_mm);
+            if let Some(bounds_mm) = given::ink_bounds_mm(&given.drawing) {
+                let (with_room, by) = ground.with_room_for(bounds_mm, pen_mm, chord_mm)?;
+                (ground, given.drawing) = (with_room, moved(&given.drawing, by));
+            }
             notes.extend_from_slice(linework.notes());
             kept =
                 Some(InputReport { file: file.display().to_string(), sha256: linework.sha256().to_owned() });
         }
-        let (learnt, border_mm) = density_of(&exemplar, &linework, chord_mm)?;
+        given.clones = options.clones.iter().map(|clone| clone.placed(ground.shift_mm)).collect();
+        let (learnt, border_mm) = density_of(&options.exemplar, &exemplar, &linework, chord_mm)?;
         let domain_mm2 = ground.domain.area_mm2();
         let ends_wanted = (learnt.dangling_ends * domain_mm2 / census::AREA_MM2).round() as usize;
         let pattern = engine::pattern(job, &exemplar, &ground, &given, ends_wanted, &mut clock)?;
         let Pattern { drawing, region, changes, levels, lacking } = pattern;
         let (drawing, region, cut_mm) =
             clock.time(Stage::Map, || laid(&ground, drawing, region, chord_mm))?;
+        let kept_ink = ground.kept(&given.drawing, INK_SHARE * chord_mm)?;
+        let region = match kept_ink.is_empty() {
+            true => region,
+            false => Region::union(region.grid(), [&region, &kept_ink]),
+        };
         let begin_mm = ground.begin_mm();
         let density = density_inside(&drawing, &region, &ground.domain, border_mm);
         let mut fill = Self {
@@ -146,6 +154,7 @@ impl Fill {
         let is_closed = sheet.as_ref().is_some_and(Sheet::is_closed);
         if !is_closed {
             fill.bridge(lacking.clone(), &mut clock)?;
+            fill.keep(&kept_ink)?;
         }
         if let Some(mended) = options.making.enforced(&fill.region, &mut clock)? {
             fill.notes.push(mended.report.note());
@@ -204,6 +213,21 @@ impl Fill {
         self.notes.push(report.note(Counts::of(&self.region)));
         self.bridges = Some(report);
         Ok(())
+    }
+
+    /// Draws what is kept again where a bridge or a slit changed it.
+    fn keep(&mut self, kept: &Region) -> Result<(), JobError> {
+        if kept.without(&self.region).is_empty() {
+            return Ok(());
+        }
+        self.region = Region::union(self.region.grid(), [&self.region, kept]);
+        let counts = Counts::of(&self.region);
+        if bridging::wanted(self.job.options.goal, counts) == counts {
+            return Ok(());
+        }
+        Err(JobError::Refused(format!(
+            "{counts} came out, as what --keep names must not be cut; draw it otherwise, or ask for counts nearer to these"
+        )))
     }
 
     /// The part in millimetres, y up from the lower left corner of its page.
@@ -334,8 +358,15 @@ const BORDER: f64 = 0.1;
 
 /// How much of everything an exemplar has, away from the border of its page, or of the box around its lines where these are not on the page; and
 /// how wide that border is.
-fn density_of(exemplar: &Drawing, linework: &Linework, chord_mm: f64) -> Result<(Density, f64), JobError> {
-    let Some((low, high)) = exemplar.bounds_mm() else { return Err(samples::SampleError::Empty.into()) };
+fn density_of(
+    file: &Path,
+    exemplar: &Drawing,
+    linework: &Linework,
+    chord_mm: f64,
+) -> Result<(Density, f64), JobError> {
+    let Some((low, high)) = exemplar.bounds_mm() else {
+        return Err(engine::unlearnt(file, SampleError::Empty));
+    };
     let page = DVec2::from(linework.page_mm());
     let grid = Grid::for_extent(low.abs().max(high.abs()).max(page).max_element()).map_err(grid_error)?;
     let ink = samples::inked(exemplar, grid, chord_mm).map_err(grid_error)?;
