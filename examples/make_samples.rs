@@ -11,11 +11,14 @@ use std::path::PathBuf;
 
 type Point = [f64; 2];
 
+/// Draws the elements of a pattern.
+type Draw = fn() -> String;
+
 const SIZE_MM: f64 = 60.0;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args_os().nth(1).map_or_else(std::env::temp_dir, PathBuf::from);
-    let drawings: [(&str, fn() -> String); 6] = [
+    let drawings: [(&str, Draw); 6] = [
         ("branches", branches),
         ("scales", scales),
         ("maze", maze),

@@ -61,6 +61,15 @@ pub struct Graph {
     pub unrealised: Vec<Edge>,
 }
 
+/// The numbers of those that stay when the others go; `usize::MAX` for the others.
+pub fn renumbered(stays: &[bool]) -> Vec<usize> {
+    let number = |next: &mut usize, stays: &bool| {
+        *next += usize::from(*stays);
+        Some(if *stays { *next - 1 } else { usize::MAX })
+    };
+    stays.iter().scan(0, number).collect()
+}
+
 /// For each sample its edges: the number of the edge, and of the sample at its other end.
 #[derive(Debug, Clone, Default)]
 pub struct Adjacency {
@@ -93,12 +102,7 @@ impl Graph {
 impl Graph {
     /// Keeps those samples for which `stays` is true, and the edges between them.
     pub fn keep(&mut self, stays: &[bool]) {
-        let mut number_of = vec![usize::MAX; stays.len()];
-        let mut next = 0;
-        for (number, _) in number_of.iter_mut().zip(stays).filter(|(_, stays)| **stays) {
-            *number = next;
-            next += 1;
-        }
+        let number_of = renumbered(stays);
         let mut kept = stays.iter();
         self.samples.retain(|_| *kept.next().expect("one for each sample"));
         for edges in [&mut self.edges, &mut self.unrealised] {
