@@ -7,16 +7,19 @@ use glam::DVec2;
 
 use super::area::Area;
 use super::elements::Elements;
-use super::graph::{Edge, Graph, Kind, Sample};
+use super::graph::{Edge, Graph, Kind, Sample, renumbered};
+use crate::planar::Sets;
 
 /// Bisections that find where an edge crosses the border.
 const BISECTIONS: usize = 40;
+/// Nearer to the border than this part of the length of a scrap, an end was cut there.
+const ON_BORDER: f64 = 1e-6;
 /// Parts of an edge that are looked at for crossings of the border.
 const PARTS: usize = 16;
 
 /// Cuts the graph at the border of `area`: samples outside go, edges to them end in a new sample on the border. Elements whose ink is not wholly
-/// inside go too. What was given stays where it is.
-pub fn cut(graph: &mut Graph, elements: &mut Elements, area: &Area) {
+/// inside go too, and scraps of less than `least_mm` that are cut off. What was given stays where it is.
+pub fn cut(graph: &mut Graph, elements: &mut Elements, area: &Area, least_mm: f64) {
     let element_stays: Vec<bool> = elements
         .placed
         .iter()
@@ -69,17 +72,38 @@ pub fn cut(graph: &mut Graph, elements: &mut Elements, area: &Area) {
         stays.push(true);
     }
     graph.keep(&stays);
-    let mut number_of = vec![0; elements.placed.len()];
-    let mut next = 0;
-    for (number, _) in number_of.iter_mut().zip(&element_stays).filter(|(_, stays)| **stays) {
-        *number = next;
-        next += 1;
-    }
+    drop_scraps(graph, area, least_mm);
+    let number_of = renumbered(&element_stays);
     for sample in graph.samples.iter_mut().filter(|s| s.kind != Kind::Curve) {
-        sample.element = number_of[sample.element as usize];
+        sample.element = number_of[sample.element as usize] as u32;
     }
     let mut kept = element_stays.iter();
     elements.placed.retain(|_| *kept.next().expect("one for each element"));
+}
+
+/// Takes away what the border cut off in less than `least_mm` of line, and samples that are alone, which draw nothing.
+fn drop_scraps(graph: &mut Graph, area: &Area, least_mm: f64) {
+    let n = graph.samples.len();
+    let mut sets = Sets::new(n);
+    graph.edges.iter().for_each(|edge| sets.join(edge.ends[0], edge.ends[1]));
+    let (mut lengths, mut is_cut) = (vec![0.0; n], vec![false; n]);
+    for edge in &graph.edges {
+        let [a, b] = edge.ends.map(|end| graph.samples[end].at);
+        lengths[sets.find(edge.ends[0])] += area.way(a, b).length();
+    }
+    for s in 0..n {
+        if area.depth_mm(graph.samples[s].at) < ON_BORDER * least_mm {
+            is_cut[sets.find(s)] = true;
+        }
+    }
+    let stays: Vec<bool> = (0..n)
+        .map(|s| {
+            let (sample, set) = (&graph.samples[s], sets.find(s));
+            let is_scrap = lengths[set] == 0.0 || (is_cut[set] && lengths[set] < least_mm);
+            sample.kind != Kind::Curve || sample.is_given || !is_scrap
+        })
+        .collect();
+    graph.keep(&stays);
 }
 
 /// The last parameter before a cubic leaves the area for the first time; its beginning is inside.

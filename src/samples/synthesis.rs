@@ -24,6 +24,9 @@ use super::similarity::{Likeness, Matching};
 use super::source::Source;
 use super::start;
 
+/// What the border cuts off in less line than this part of the finest spacing is a scrap.
+const SCRAP: f64 = 0.8;
+
 /// What was synthesized.
 #[derive(Debug, Clone)]
 pub struct Synthesis {
@@ -78,7 +81,8 @@ pub fn synthesize(
         reports.push(report);
     }
     let mut elements = Elements { classes: elements.classes, placed: output.placed };
-    border::cut(&mut output.graph, &mut elements, wanted);
+    let least_mm = SCRAP * options.levels.last().map_or(0.0, |level| level.spacing_mm);
+    border::cut(&mut output.graph, &mut elements, wanted, least_mm);
     if output.graph.samples.is_empty() {
         return Err(SampleError::NoRoom);
     }

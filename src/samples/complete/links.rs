@@ -45,7 +45,14 @@ impl Planner<'_, '_> {
         let mut lines = Lines::new(&scene.work);
         let mut sets = Sets::new(scene.region.components());
         let mut steps = Vec::new();
-        for edge in self.voted() {
+        // Edges that go on from ends as these point, then those that turn.
+        let goes_on = |edge: &&Edge| {
+            let [from, to] = edge.ends.map(|end| scene.port(end));
+            let way = scene.work.area.way(from.at, to.at);
+            from.points_along(way) && to.points_along(-way)
+        };
+        let (straight, turning): (Vec<&Edge>, Vec<&Edge>) = self.voted().partition(goes_on);
+        for edge in straight.into_iter().chain(turning) {
             if steps.len() == needed {
                 return steps;
             }

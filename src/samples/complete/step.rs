@@ -79,6 +79,13 @@ pub(super) struct Port {
     pub onward: Option<DVec2>,
 }
 
+impl Port {
+    /// Whether a path that ends there goes on along `way`, within 45 degrees; elsewhere any way is as good.
+    pub fn points_along(&self, way: DVec2) -> bool {
+        self.onward.is_none_or(|onward| onward.dot(way) > std::f64::consts::FRAC_1_SQRT_2 * way.length())
+    }
+}
+
 /// A stroke that may be added.
 #[derive(Debug, Clone)]
 pub(super) struct Link {

@@ -5,8 +5,6 @@ use super::lines::{Lines, Run};
 use super::scene::Scene;
 use super::step::{Link, Port, Step};
 
-/// Ends meet when each points at the other within this: the cosine of 45 degrees.
-const POINTING: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// A twig is shorter than so many pens.
 const TWIG_PENS: f64 = 1.2;
 
@@ -95,7 +93,10 @@ impl Tidy<'_, '_> {
             if edge.ends.iter().any(|end| self.open.contains(end)) {
                 let [from, to] = edge.ends.map(|end| scene.port(end));
                 let has_other = edge.ends.iter().all(|&end| !scene.by_sample[end].is_empty());
-                if has_other {
+                let way = scene.work.area.way(from.at, to.at);
+                // An end that would have to turn back makes a hook.
+                let goes_on = from.points_along(way) && to.points_along(-way);
+                if has_other && goes_on {
                     self.link(
                         ChangeKind::Join,
                         Link::smooth(scene, &from, &to),
@@ -116,10 +117,7 @@ impl Tidy<'_, '_> {
             for &b in &self.open[..i] {
                 let (from, to) = (scene.port(a), scene.port(b));
                 let way = scene.work.area.way(from.at, to.at);
-                let points = |port: &Port, way: glam::DVec2| {
-                    port.onward.is_some_and(|onward| onward.dot(way) > POINTING * way.length())
-                };
-                if way.length() < reach_mm && points(&from, way) && points(&to, -way) {
+                if way.length() < reach_mm && from.points_along(way) && to.points_along(-way) {
                     pairs.push((way.length(), [b, a], Link::smooth(scene, &to, &from)));
                 }
             }
