@@ -27,7 +27,7 @@ const CUT_PENS: f64 = 0.1;
 /// characteristic, of which the border has half as well (the usual estimate from a window, Stoyan, Kendall and Mecke 1995, §6).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Density {
-    /// The area that was counted, in square millimetres: the page of an exemplar, or the domain.
+    /// The mean area of the windows that were counted, in square millimetres.
     pub area_mm2: f64,
     /// Connected components for each 100 square centimetres.
     pub components: f64,
@@ -38,6 +38,17 @@ pub struct Density {
 }
 
 impl Density {
+    /// The mean of several, at least one.
+    pub(super) fn mean(all: Vec<Self>) -> Self {
+        let mean = |of: fn(&Self) -> f64| all.iter().map(of).sum::<f64>() / all.len() as f64;
+        Self {
+            area_mm2: mean(|d| d.area_mm2),
+            components: mean(|d| d.components),
+            holes: mean(|d| d.holes),
+            dangling_ends: mean(|d| d.dangling_ends),
+        }
+    }
+
     /// That of a drawing and its ink, which does not leave `window` and is on its grid.
     pub(super) fn new(drawing: &Drawing, ink: &Region, window: &Region) -> Self {
         let pen_mm = drawing.curves.iter().map(|curve| curve.width_mm).fold(0.0, f64::max);

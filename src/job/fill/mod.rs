@@ -115,7 +115,7 @@ impl Fill {
                 Some(InputReport { file: file.display().to_string(), sha256: linework.sha256().to_owned() });
         }
         given.clones = options.clones.iter().map(|clone| clone.placed(ground.shift_mm)).collect();
-        let (learnt, border_mm) = density_of(&options.exemplar, &exemplar, &linework, chord_mm)?;
+        let (learnt, side_mm) = density_of(&options.exemplar, &exemplar, &linework, chord_mm)?;
         let domain_mm2 = ground.domain.area_mm2();
         let ends_wanted = (learnt.dangling_ends * domain_mm2 / census::AREA_MM2).round() as usize;
         let pattern = engine::pattern(job, &exemplar, &ground, &given, ends_wanted, &mut clock)?;
@@ -128,7 +128,7 @@ impl Fill {
             false => Region::union(region.grid(), [&region, &kept_ink]),
         };
         let begin_mm = ground.begin_mm();
-        let density = density_inside(&drawing, &region, &ground.domain, border_mm);
+        let density = density_inside(&drawing, &region, &ground.domain, side_mm);
         let mut fill = Self {
             page_mm: ground.page_mm,
             exemplar: InputReport {
@@ -352,12 +352,12 @@ fn laid(
     Ok((drawing, ink, cut_mm))
 }
 
-/// The part of an exemplar's shorter side that is left out all around when it and what was made of it are counted: how a drawing ends is not what it
-/// is like inside.
-const BORDER: f64 = 0.1;
+/// Parts of an exemplar's shorter side that are left out all around when it and what was made of it are counted, one after the other, as how a
+/// drawing ends is not what it is like inside. Of several windows the mean is steadier.
+const BORDERS: [f64; 4] = [0.05, 0.1, 0.15, 0.2];
 
 /// How much of everything an exemplar has, away from the border of its page, or of the box around its lines where these are not on the page; and
-/// how wide that border is.
+/// how long its shorter side is.
 fn density_of(
     file: &Path,
     exemplar: &Drawing,
@@ -374,16 +374,18 @@ fn density_of(
     let is_on_page = low.cmpge(-pen).all() && high.cmple(page + pen).all();
     // A single straight line has a box without area.
     let (low, high) = if is_on_page { (DVec2::ZERO, page) } else { (low, high.max(low + pen)) };
-    let border_mm = BORDER * (high - low).min_element();
+    let side_mm = (high - low).min_element();
     let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
     let path = corners.iter().map(|&p| grid.snap(p)).collect::<Result<Vec<_>, _>>().map_err(grid_error)?;
     let window = Region::fill(grid, &[path], FillRule::NonZero);
-    Ok((density_inside(exemplar, &ink.within(&window), &window, border_mm), border_mm))
+    Ok((density_inside(exemplar, &ink.within(&window), &window, side_mm), side_mm))
 }
 
-/// How much of everything there is so far inside of an area, or on all of it where nothing is so far inside.
-fn density_inside(drawing: &Drawing, ink: &Region, area: &Region, border_mm: f64) -> Density {
-    let inner = area.offset(-border_mm, border_mm / 10.0);
-    let window = if inner.is_empty() { area } else { &inner };
-    Density::new(drawing, &ink.within(window), window)
+/// How much of everything there is inside of an area, for an exemplar whose shorter side is `side_mm`: the mean of windows, or on all of the area where none
+/// has room.
+fn density_inside(drawing: &Drawing, ink: &Region, area: &Region, side_mm: f64) -> Density {
+    let window = |part: &f64| area.offset(-part * side_mm, part * side_mm / 10.0);
+    let windows: Vec<Region> = BORDERS.iter().map(window).filter(|window| !window.is_empty()).collect();
+    let windows = if windows.is_empty() { vec![area.clone()] } else { windows };
+    Density::mean(windows.iter().map(|window| Density::new(drawing, &ink.within(window), window)).collect())
 }
