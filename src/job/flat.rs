@@ -140,11 +140,15 @@ impl Lain<'_> {
         Ok(self.ground.map(|ground| ground.merged_counts(counts)).transpose()?.flatten())
     }
 
+    /// Whether it is cut out of a model, so that its ink is a gap of what is made.
+    fn is_carved(&self) -> bool {
+        self.ground.is_some_and(|ground| ground.options().mode == SurfaceMode::Carve)
+    }
+
     /// It as a solid with facets within `chord_mm`, and the model if they are one. `asked_mm` is the chord error that was asked for.
     fn solid(&self, chord_mm: f64, asked_mm: f64, notes: &mut Vec<String>) -> Result<Solid, JobError> {
         let Self { part, map, ground } = *self;
-        let is_cutter = ground.is_some_and(|ground| ground.options().mode == SurfaceMode::Carve);
-        if !is_cutter {
+        if !self.is_carved() {
             notes.extend(space::relief_notes(map, asked_mm));
         }
         let solid = space::solid(part, map, chord_mm)?;
@@ -224,7 +228,10 @@ impl Flat<'_> {
                             .map(|()| joined.narrow_places(&narrow_places, kept, tolerances)),
                         None => making::check_widths(kept, tolerances).map(|()| narrow_places),
                     }
-                    .map_err(|mismatch| too_narrow(mismatch, blamed, enforce || joined.is_some()))
+                    .map_err(|mismatch| {
+                        let is_carved = self.lain.is_some_and(|lain| lain.is_carved());
+                        too_narrow(mismatch, blamed, enforce || joined.is_some(), is_carved)
+                    })
                 })
             },
             |clock| {
@@ -331,9 +338,14 @@ impl Flat<'_> {
 }
 
 /// That what is kept lacks a width that was asked for, whatever files are made of it.
-fn too_narrow(mismatch: Mismatch, file: &Path, is_mended: bool) -> JobError {
-    let remedy = if is_mended { "" } else { "; --enforce would mend it" }.to_owned();
-    JobError::Mismatch { file: file.to_owned(), mismatch, remedy }
+fn too_narrow(mismatch: Mismatch, file: &Path, is_mended: bool, is_carved: bool) -> JobError {
+    let remedy = match mismatch {
+        _ if !is_mended => "; --enforce would mend it",
+        Mismatch::Feature { .. } if is_carved => "; it is cut out of the model: a smaller --min-gap would do",
+        Mismatch::Gap { .. } if is_carved => "; it is left between cuts: a smaller --min-feature would do",
+        _ => "",
+    };
+    JobError::Mismatch { file: file.to_owned(), mismatch, remedy: remedy.to_owned() }
 }
 
 pub(super) fn generator() -> String {
