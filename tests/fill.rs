@@ -4,6 +4,7 @@
 mod common;
 
 use std::fmt::Write as _;
+use std::path::Path;
 
 use common::{Finished, Room};
 use openwork::job::FillBuilder;
@@ -131,6 +132,75 @@ fn a_band_in_space_has_its_counts_as_it_stands() {
     };
     refuses("--chamfer 0.3mm", &["--chamfer", "lie flat"]);
     refuses("--bridge 1mm", &["--bridge", "would not meet"]);
+}
+
+#[test]
+fn a_band_on_a_model_fits_it_or_is_one_with_it() {
+    let room = room();
+    let vase = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/models/vase.obj");
+    std::fs::copy(vase, room.path("vase.obj")).unwrap();
+    let job = "twigs.svg --domain band --mesh vase.obj --around 40mm --width 20mm --components 1";
+    let (flat, report) = fill(&room, &format!("{job} --frame 1.2mm --thickness 1.5mm -o ring.stl"));
+    let holes = report["holes"].as_u64().unwrap();
+    assert!(report["components"] == 1 && holes >= 2, "{report}");
+    assert_eq!((&report["solid"]["genus"], &report["flat"]["holes"]), (&holes.into(), &flat.holes.into()));
+    assert_eq!(
+        (&report["surface"]["mode"], &report["surface"]["route"]),
+        (&"band".into(), &"around 40mm".into())
+    );
+    assert_eq!(report["domain_file"]["file"], "vase.obj");
+    // It is where the model is, and around it.
+    let corner = |mm: &Value| mm.as_f64().unwrap();
+    let [low, high] =
+        [0, 1].map(|end| [0, 1, 2].map(|axis| corner(&report["solid"]["bounds_mm"][end][axis])));
+    assert!((low[2] - 30.0).abs() < 1.5 && (high[2] - 50.0).abs() < 1.5, "{low:?} {high:?}");
+    assert!(low[0] < -34.0 && high[1] > 34.0 && high[0] < 37.0, "{low:?} {high:?}");
+    // The vase is open above, so that its wall is a bowl.
+    let shells_and_genus = |report: &Value| {
+        let shells = report["solid"]["shells"].as_array().unwrap().len();
+        (shells, report["solid"]["genus"].as_u64().unwrap())
+    };
+    let (_, report) = fill(&room, &format!("{job} --mode emboss --shell 2mm --thickness 1mm -o vase.stl"));
+    assert_eq!(shells_and_genus(&report), (1, 0));
+    // Each hole of what is carved through it comes off.
+    let (_, report) = fill(&room, &format!("{job} --mode carve --shell 2mm -o vase.stl"));
+    let holes = report["holes"].as_u64().unwrap();
+    assert_eq!(shells_and_genus(&report), (1 + holes as usize, 1));
+    let open = "--through 35,0,40;0,35,44;-35,0,40 --tolerance 4mm";
+    let job = "twigs.svg --domain band --mesh vase.obj --width 20mm --components 1 --holes 2";
+    let (flat, report) = fill(&room, &format!("{job} {open} -o part.stl"));
+    assert_eq!((flat.components, flat.holes), (1, 2));
+    assert_eq!(shells_and_genus(&report), (1, 2));
+}
+
+#[test]
+fn what_no_model_can_carry() {
+    let room = room();
+    let vase = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/models/vase.obj");
+    std::fs::copy(vase, room.path("vase.obj")).unwrap();
+    let refuses = |arguments: &str, words: &[&str]| {
+        room.refuses(&format!("fill twigs.svg {arguments} -o out.stl"), 2, words);
+    };
+    let job = "--domain band --mesh vase.obj --around 40mm";
+    refuses("--domain band --mesh vase.obj --width 20mm", &["--around"]);
+    refuses("--domain band --around 40mm --width 20mm", &["--mesh"]);
+    refuses("--domain rect:90x60mm --mode carve", &["--mesh"]);
+    refuses(
+        "--domain rect:90x60mm --mesh vase.obj --around 40mm --width 20mm",
+        &["rect:90x60mm has no curve", "--mesh"],
+    );
+    refuses(job, &["--mesh", "--width 20mm"]);
+    refuses(&format!("{job} --width 20mm --along line:90mm"), &["cannot be used with"]);
+    refuses(&format!("{job} --width 20mm --twist 90"), &["--twist", "lies as the model does"]);
+    refuses(&format!("{job} --width 20mm --mode emboss"), &["is open", "--shell"]);
+    refuses(&format!("{job} --width 20mm --mode carve"), &["how deep", "--depth 2mm"]);
+    refuses(&format!("{job} --width 20mm -o vase.obj"), &["vase.obj is an input"]);
+    let narrow = "--width 20mm --mode carve --shell 2mm --min-gap 1.5mm";
+    room.refuses(
+        &format!("fill twigs.svg {job} {narrow} -o out.stl"),
+        4,
+        &["cut out of the model", "smaller --min-gap"],
+    );
 }
 
 #[test]

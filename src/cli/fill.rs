@@ -9,6 +9,7 @@ use super::args::PartArguments;
 use super::laser::say_cuts;
 use super::progress::Progress;
 use super::run::{BRIDGES_SHOWN, CliError, output, say_bridges, say_notes, say_quantities};
+use super::surface::OnModelArguments;
 use super::values;
 use crate::domain::{CurveSpec, FillDomain, Twist};
 use crate::job::{
@@ -37,6 +38,8 @@ Examples:
     openwork fill waves.svg --domain band --along circle:90mm --width 20mm --components 1 -o ring.svg
   A bracelet that stands, in one piece:
     openwork fill leaves.svg --domain band --along ring:65mm --width 30mm --components 1 --frame 1.5mm -o bracelet.stl
+  A bracelet for a vase, which fits around it at half of its height; --mode emboss makes both one, as openwork surface does:
+    openwork fill leaves.svg --domain band --mesh vase.stl --around 50% --width 14mm --components 1 -o ring.stl
   Go on from strokes that are there, with a finer look around:
     openwork fill branches.svg --domain rect:200x150mm --keep begun.svg --radii 16,12,9mm --spacing 10,7,5mm -o whole.svg
   A corner of the exemplar, 30 mm wide and 20 mm high, copied to a place:
@@ -60,7 +63,7 @@ pub(super) struct FillArguments {
     /// The curve of --domain band, which its middle line follows: line:120mm, circle:65mm (its diameter), path:FILE.svg or
     /// path:FILE.svg#id. In space, where drawings are the pattern laid flat: ring:65mm, helix:65mm,pitch=20mm,turns=3 (inner diameters),
     /// points:FILE.csv or points:FILE.obj
-    #[arg(long, value_name = "SPEC", value_parser = values::curve)]
+    #[arg(long, value_name = "SPEC", value_parser = values::curve, conflicts_with = "mesh")]
     along: Option<CurveSpec>,
     /// How wide the strip of --domain band is
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
@@ -72,6 +75,8 @@ pub(super) struct FillArguments {
     /// 0:0,40:90,120:90
     #[arg(long, value_name = "DEGREES", allow_hyphen_values = true)]
     twist: Option<Twist>,
+    #[command(flatten)]
+    model: OnModelArguments,
     /// Round corners of --along to this radius [default: a corner is an error]
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     round: Option<f64>,
@@ -260,13 +265,17 @@ fn job(a: &FillArguments) -> Result<FillJob, CliError> {
         .constants(a.method.constants(a))
         .making(making)
         .space(SpaceOptions { gap_mm: a.gap, twist: a.twist.clone(), points: None });
-    match (&a.along, a.width) {
-        (Some(along), Some(width_mm)) => builder = builder.along(along.clone(), width_mm),
-        (None, None) => {}
-        (along, _) => {
-            let (option, wanted) = match along {
-                Some(_) => ("--along", "give --width too, as --width 20mm"),
-                None => ("--width", "give --along too, as --along circle:65mm"),
+    match (&a.along, a.model.options(&a.part.make)?, a.width) {
+        (Some(along), _, Some(width_mm)) => builder = builder.along(along.clone(), width_mm),
+        (None, Some(surface), Some(width_mm)) => builder = builder.on_model(surface, width_mm),
+        (None, None, None) => {}
+        (along, surface, width_mm) => {
+            let (option, wanted) = match (along, surface, width_mm) {
+                (.., Some(_)) => {
+                    ("--width", "give --along too, as --along circle:65mm, or --mesh for a band on a model")
+                }
+                (Some(_), ..) => ("--along", "give --width too, as --width 20mm"),
+                _ => ("--mesh", "give --width too, as --width 20mm"),
             };
             let found = "a band needs the curve that it follows, and how wide it is".to_owned();
             return Err(JobError::Option { option, found, wanted: wanted.to_owned() }.into());

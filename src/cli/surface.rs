@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use clap::{ArgGroup, Args, ValueEnum};
 
 use super::args::PatternArguments;
+use super::make::MakeArgs;
 use super::progress::Progress;
 use super::run::{CliError, destinations, say_band, with_pattern};
 use super::values;
@@ -36,41 +37,49 @@ Exit codes: 0 done; 2 the exemplar, the model or an argument is wrong; 3 the con
 verification and nothing was written; 1 a bug of ours.";
 
 #[derive(Debug, Args)]
-#[command(group = ArgGroup::new("route").required(true))]
+#[command(mut_arg("mesh", |mesh| mesh.required(true)))]
 pub(super) struct SurfaceArguments {
     /// The ornament to learn from (SVG)
     pub(super) exemplar: PathBuf,
-    /// The model: an STL, a 3MF or an OBJ, in millimetres
-    #[arg(long, value_name = "FILE")]
-    pub(super) mesh: PathBuf,
-    /// Points of the model that the curve passes, x,y,z with semicolons between them; if the last is the first, it closes
-    #[arg(long, value_name = "POINTS", group = "route", value_parser = values::points, allow_hyphen_values = true)]
-    pub(super) through: Option<ControlPoints>,
-    /// A curve near the model: FILE.obj with a polyline, or FILE.csv with a row of x, y and z for each point; if the last is
-    /// the first, it closes
-    #[arg(long, value_name = "FILE", group = "route")]
-    pub(super) curve: Option<PathBuf>,
-    /// All the way round at a height: z in the coordinates of the model, as 30mm, or a part of its height, as 50%
-    #[arg(long, value_name = "HEIGHT", group = "route", value_parser = values::height, allow_hyphen_values = true)]
-    pub(super) around: Option<Height>,
-    /// How far points may be off the model; they are brought onto it
-    /// [default: 1mm]
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, conflicts_with = "around", allow_hyphen_values = true)]
-    pub(super) tolerance: Option<f64>,
-    /// What becomes of the band
-    #[arg(long, value_enum, default_value_t)]
-    pub(super) mode: Mode,
-    /// Give the model a wall, inwards, that is so thick: open models need one, and closed ones are made hollow
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
-    pub(super) shell: Option<f64>,
-    /// Carve so deep, from the surface inwards, instead of through the wall of --shell
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
-    pub(super) depth: Option<f64>,
+    #[command(flatten)]
+    pub(super) model: OnModelArguments,
     /// The pattern must go all the way round a closed curve
     #[arg(long)]
     pub(super) closed_pattern: bool,
     #[command(flatten)]
     pub(super) pattern: PatternArguments,
+}
+
+/// Where a band lies on a model, and what becomes of both.
+#[derive(Debug, Args)]
+#[command(group = ArgGroup::new("route"))]
+pub(super) struct OnModelArguments {
+    /// The model that the band lies on: an STL, a 3MF or an OBJ, in millimetres
+    #[arg(long, value_name = "FILE", requires = "route")]
+    mesh: Option<PathBuf>,
+    /// Points of the model that the curve passes, x,y,z with semicolons between them; if the last is the first, it closes
+    #[arg(long, value_name = "POINTS", group = "route", requires = "mesh", value_parser = values::points, allow_hyphen_values = true)]
+    through: Option<ControlPoints>,
+    /// A curve near the model: FILE.obj with a polyline, or FILE.csv with a row of x, y and z for each point; if the last is
+    /// the first, it closes
+    #[arg(long, value_name = "FILE", group = "route", requires = "mesh")]
+    curve: Option<PathBuf>,
+    /// All the way round at a height: z in the coordinates of the model, as 30mm, or a part of its height, as 50%
+    #[arg(long, value_name = "HEIGHT", group = "route", requires = "mesh", value_parser = values::height, allow_hyphen_values = true)]
+    around: Option<Height>,
+    /// How far points may be off the model; they are brought onto it
+    /// [default: 1mm]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, requires = "mesh", conflicts_with = "around", allow_hyphen_values = true)]
+    tolerance: Option<f64>,
+    /// What becomes of the band
+    #[arg(long, value_enum, default_value_t, requires = "mesh")]
+    mode: Mode,
+    /// Give the model a wall, inwards, that is so thick: open models need one, and closed ones are made hollow
+    #[arg(long, value_name = "LENGTH", requires = "mesh", value_parser = values::length, allow_hyphen_values = true)]
+    shell: Option<f64>,
+    /// Carve so deep, from the surface inwards, instead of through the wall of --shell
+    #[arg(long, value_name = "LENGTH", requires = "mesh", value_parser = values::length, allow_hyphen_values = true)]
+    depth: Option<f64>,
 }
 
 #[derive(Debug, Clone, Copy, Default, ValueEnum)]
@@ -105,30 +114,8 @@ pub(super) fn job(
     arguments: &SurfaceArguments,
     set: impl FnOnce(BandBuilder) -> BandBuilder,
 ) -> Result<BandJob, CliError> {
-    if matches!(arguments.mode, Mode::Carve) && arguments.pattern.part.make.has_thickness() {
-        return Err(CliError::Job(JobError::Option {
-            option: "--thickness",
-            found: "what is carved is as thick as the wall, or as deep as --depth".to_owned(),
-            wanted: "leave it out, or use --depth".to_owned(),
-        }));
-    }
-    let options = SurfaceOptions {
-        model: arguments.mesh.clone(),
-        route: match (&arguments.through, &arguments.curve, arguments.around) {
-            (Some(points), ..) => through(points.clone()),
-            (_, Some(file), _) => Route::Curve(file.clone()),
-            (.., Some(height)) => Route::Around(height),
-            _ => unreachable!("the parser asks for one of them"),
-        },
-        mode: match arguments.mode {
-            Mode::Band => SurfaceMode::Band,
-            Mode::Emboss => SurfaceMode::Emboss,
-            Mode::Carve => SurfaceMode::Carve,
-        },
-        shell_mm: arguments.shell,
-        depth_mm: arguments.depth,
-        tolerance_mm: arguments.tolerance.unwrap_or(TOLERANCE_MM),
-    };
+    let options =
+        arguments.model.options(&arguments.pattern.part.make)?.expect("the parser asks for a model");
     let builder = BandBuilder::on_model(&arguments.exemplar, options)
         .closed_pattern(arguments.closed_pattern)
         .counted(arguments.pattern.report.is_some());
@@ -137,6 +124,39 @@ pub(super) fn job(
         None => builder,
     };
     Ok(set(with_pattern(builder, &arguments.pattern)?).build()?)
+}
+
+impl OnModelArguments {
+    /// What is asked of a band on a model that is made so, if there is a model.
+    pub(super) fn options(&self, make: &MakeArgs) -> Result<Option<SurfaceOptions>, CliError> {
+        let Some(model) = self.mesh.clone() else { return Ok(None) };
+        if matches!(self.mode, Mode::Carve) && make.has_thickness() {
+            return Err(CliError::Job(JobError::Option {
+                option: "--thickness",
+                found: "what is carved is as thick as the wall, or as deep as --depth".to_owned(),
+                wanted: "leave it out, or use --depth".to_owned(),
+            }));
+        }
+        let route = match (&self.through, &self.curve, self.around) {
+            (Some(points), ..) => through(points.clone()),
+            (_, Some(file), _) => Route::Curve(file.clone()),
+            (.., Some(height)) => Route::Around(height),
+            _ => unreachable!("the parser asks for one of them"),
+        };
+        let mode = match self.mode {
+            Mode::Band => SurfaceMode::Band,
+            Mode::Emboss => SurfaceMode::Emboss,
+            Mode::Carve => SurfaceMode::Carve,
+        };
+        Ok(Some(SurfaceOptions {
+            model,
+            route,
+            mode,
+            shell_mm: self.shell,
+            depth_mm: self.depth,
+            tolerance_mm: self.tolerance.unwrap_or(TOLERANCE_MM),
+        }))
+    }
 }
 
 /// Points whose last is their first are closed.

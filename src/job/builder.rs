@@ -396,7 +396,8 @@ impl BandJob {
             | CurveSpec::Ring { .. }
             | CurveSpec::Helix { .. } => None,
         };
-        let drawings = curve.into_iter().chain(self.options.laser.engrave.as_deref());
+        let on_model = self.options.surface.as_ref().and_then(SurfaceOptions::curve_file);
+        let drawings = curve.into_iter().chain(on_model).chain(self.options.laser.engrave.as_deref());
         let inputs: Vec<&Path> = std::iter::once(self.options.exemplar.as_path()).chain(drawings).collect();
         Output::check(targets, &inputs)
     }

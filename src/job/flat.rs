@@ -19,6 +19,7 @@ use super::raised::{self, Raised};
 use super::small;
 use super::space;
 use super::stage::{Clock, Stage};
+use super::surface::{Ground, MergedCounts, SurfaceMode};
 use crate::domain::SpaceMap;
 use crate::export::{self, SvgOptions};
 use crate::fabricate::{Bridge, Counts, Material, Solid};
@@ -128,6 +129,34 @@ pub(super) struct Lain<'f> {
     /// It as it is laid flat, and what it has as it stands.
     pub(super) part: &'f Part,
     pub(super) map: &'f SpaceMap,
+    /// The model that it is on, if there is one.
+    pub(super) ground: Option<&'f Ground>,
+}
+
+impl Lain<'_> {
+    /// What the model has with the part, if they are one.
+    fn merged_counts(&self) -> Result<Option<MergedCounts>, JobError> {
+        let counts = self.part.counts;
+        Ok(self.ground.map(|ground| ground.merged_counts(counts)).transpose()?.flatten())
+    }
+
+    /// Whether it is cut out of a model, so that its ink is a gap of what is made.
+    fn is_carved(&self) -> bool {
+        self.ground.is_some_and(|ground| ground.options().mode == SurfaceMode::Carve)
+    }
+
+    /// It as a solid with facets within `chord_mm`, and the model if they are one. `asked_mm` is the chord error that was asked for.
+    fn solid(&self, chord_mm: f64, asked_mm: f64, notes: &mut Vec<String>) -> Result<Solid, JobError> {
+        let Self { part, map, ground } = *self;
+        if !self.is_carved() {
+            notes.extend(space::relief_notes(map, asked_mm));
+        }
+        let solid = space::solid(part, map, chord_mm)?;
+        match ground {
+            Some(ground) => ground.merged(solid, part.counts, notes),
+            None => Ok(solid),
+        }
+    }
 }
 
 /// What was made of it, and what was found in the files.
@@ -166,11 +195,12 @@ impl Flat<'_> {
             ..Expected::default()
         };
         let counts = self.lain.map_or_else(|| Counts::of(region), |lain| lain.part.counts);
-        let standing = Expected {
+        let merged = self.lain.map(|lain| lain.merged_counts()).transpose()?.flatten();
+        let standing = merged.map(MergedCounts::expected).unwrap_or_else(|| Expected {
             components: Some(counts.components.into()),
             holes: Some(counts.holes.into()),
             ..Expected::default()
-        };
+        });
         let joined = self.lain.and_then(|lain| lain.part.joined.as_ref());
         let document = print.document(self.source, self.seed, counts);
         let mut cutting = match laser.is_needed(outputs) {
@@ -198,15 +228,17 @@ impl Flat<'_> {
                             .map(|()| joined.narrow_places(&narrow_places, kept, tolerances)),
                         None => making::check_widths(kept, tolerances).map(|()| narrow_places),
                     }
-                    .map_err(|mismatch| too_narrow(mismatch, blamed, enforce || joined.is_some()))
+                    .map_err(|mismatch| {
+                        let is_carved = self.lain.is_some_and(|lain| lain.is_carved());
+                        too_narrow(mismatch, blamed, enforce || joined.is_some(), is_carved)
+                    })
                 })
             },
             |clock| {
                 let asked_mm = tolerances.chord_mm();
                 match self.lain {
-                    Some(Lain { part, map }) => Raised::bent(wanted, clock, asked_mm, |chord_mm, notes| {
-                        notes.extend(space::relief_notes(map, asked_mm));
-                        space::solid(part, map, chord_mm)
+                    Some(lain) => Raised::bent(wanted, clock, asked_mm, |chord_mm, notes| {
+                        lain.solid(chord_mm, asked_mm, notes)
                     }),
                     None => {
                         Raised::new(wanted, clock, |notes| print.solid(region, thickness_mm, asked_mm, notes))
@@ -306,9 +338,14 @@ impl Flat<'_> {
 }
 
 /// That what is kept lacks a width that was asked for, whatever files are made of it.
-fn too_narrow(mismatch: Mismatch, file: &Path, is_mended: bool) -> JobError {
-    let remedy = if is_mended { "" } else { "; --enforce would mend it" }.to_owned();
-    JobError::Mismatch { file: file.to_owned(), mismatch, remedy }
+fn too_narrow(mismatch: Mismatch, file: &Path, is_mended: bool, is_carved: bool) -> JobError {
+    let remedy = match mismatch {
+        _ if !is_mended => "; --enforce would mend it",
+        Mismatch::Feature { .. } if is_carved => "; it is cut out of the model: a smaller --min-gap would do",
+        Mismatch::Gap { .. } if is_carved => "; it is left between cuts: a smaller --min-feature would do",
+        _ => "",
+    };
+    JobError::Mismatch { file: file.to_owned(), mismatch, remedy: remedy.to_owned() }
 }
 
 pub(super) fn generator() -> String {

@@ -16,7 +16,7 @@ use super::print;
 use super::raised::{Raised, Wanted};
 use super::space;
 use super::stage::{Clock, Stage};
-use super::surface::{Ground, MergedCounts};
+use super::surface::MergedCounts;
 use crate::export::{self, MeshDocument, SvgDocument, SvgOptions};
 use crate::fabricate::{Counts, Solid};
 use crate::planar::{Region, Tolerances};
@@ -145,23 +145,8 @@ impl Band {
             if !self.job.options.carves_model() {
                 notes.extend(space::relief_notes(map, chord_mm));
             }
-            let counts = self.merged_counts()?;
-            if let Some(MergedCounts { shells, genus }) = counts {
-                notes.push(format!(
-                    "the model with the pattern: {shells} shell(s) of a genus of {genus} in all"
-                ));
-            }
-            if counts.is_some()
-                && self.job.ground.as_ref().is_some_and(Ground::is_through)
-                && self.counts.holes > 0
-            {
-                notes.push(format!(
-                    "carved through, the pattern parts the model into {} pieces, one more than it has holes; --holes 0 leaves it in one",
-                    self.counts.holes + 1
-                ));
-            }
-            return match counts {
-                Some(_) => self.job.ground.as_ref().expect("it has counts with a model").merged(&solid),
+            return match &self.job.ground {
+                Some(ground) => ground.merged(solid, self.counts, notes),
                 None => Ok(solid),
             };
         }

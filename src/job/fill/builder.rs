@@ -11,6 +11,7 @@ use crate::job::making;
 use crate::job::output::{Output, Target};
 use crate::job::space::SpaceOptions;
 use crate::job::stage::Stage;
+use crate::job::surface::SurfaceOptions;
 use crate::topology::{Goal, Wanted};
 
 /// How many levels there are if nothing is said (Tu 2020 §4.3.5).
@@ -38,6 +39,7 @@ pub struct FillBuilder {
     pub(super) width_mm: Option<f64>,
     pub(super) round_mm: Option<f64>,
     pub(super) space: SpaceOptions,
+    pub(super) surface: Option<SurfaceOptions>,
     pub(super) goal: Goal,
     pub(super) levels: Option<usize>,
     pub(super) radii_mm: Vec<f64>,
@@ -61,6 +63,7 @@ impl FillBuilder {
             width_mm: None,
             round_mm: None,
             space: SpaceOptions::default(),
+            surface: None,
             goal: Goal::default(),
             levels: None,
             radii_mm: Vec::new(),
@@ -79,6 +82,13 @@ impl FillBuilder {
     pub fn along(mut self, curve: CurveSpec, width_mm: f64) -> Self {
         (self.along, self.width_mm) = (Some(curve), Some(width_mm));
         self
+    }
+
+    /// The model that a [`FillDomain::Band`] lies on, with the curve that it follows there (Zhou 2014 §6.3), and how wide the strip is.
+    pub fn on_model(mut self, surface: SurfaceOptions, width_mm: f64) -> Self {
+        let along = CurveSpec::Model { file: surface.model.clone() };
+        self.surface = Some(surface);
+        self.along(along, width_mm)
     }
 
     /// The radius to which corners of that curve are rounded; without one, a corner is an error.
@@ -236,7 +246,7 @@ impl FillBuilder {
                 Err(refused(
                     "--domain",
                     found,
-                    "use --domain band with --along and --width, or leave these out",
+                    "use --domain band with --along or --mesh and with --width, or leave these out",
                 ))
             }
             (Some(along), Some(width_mm)) => {
@@ -245,10 +255,10 @@ impl FillBuilder {
                     return Err(refused("--width", found, "it must be from 0.5 to 10000 mm"));
                 }
                 match along {
-                    CurveSpec::Model { .. } => Err(refused(
+                    CurveSpec::Model { .. } if self.surface.is_none() => Err(refused(
                         "--along",
-                        format!("{along} is one that only openwork surface follows"),
-                        "use a line, a circle, a path, a ring, a helix or points",
+                        format!("{along} needs the model, and where the curve goes on it"),
+                        "use --mesh with --around, --through or --curve",
                     )),
                     _ => Ok(()),
                 }
@@ -256,7 +266,7 @@ impl FillBuilder {
             _ => Err(refused(
                 "--domain",
                 "a band needs the curve that it follows, and how wide it is".to_owned(),
-                "give both --along and --width, as --along circle:65mm --width 20mm",
+                "give both --along and --width, as --along circle:65mm --width 20mm, or --mesh and --width for a band on a model",
             )),
         }
     }
@@ -340,10 +350,14 @@ impl FillJob {
             FillDomain::Rect(_) | FillDomain::Band => None,
         };
         let curve = match &options.along {
-            Some(CurveSpec::Path { file, .. } | CurveSpec::Points { file }) => Some(file.as_path()),
+            Some(CurveSpec::Path { file, .. } | CurveSpec::Points { file } | CurveSpec::Model { file }) => {
+                Some(file.as_path())
+            }
             _ => None,
         };
-        let others = [domain, curve, options.keep.as_deref(), options.making.laser.engrave.as_deref()];
+        let on_model = options.surface.as_ref().and_then(SurfaceOptions::curve_file);
+        let others =
+            [domain, curve, on_model, options.keep.as_deref(), options.making.laser.engrave.as_deref()];
         let inputs: Vec<&Path> =
             std::iter::once(options.exemplar.as_path()).chain(others.into_iter().flatten()).collect();
         Output::check(outputs.iter().map(Output::target).chain(report_file), &inputs)

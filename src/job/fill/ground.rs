@@ -84,7 +84,7 @@ impl Ground {
             },
         };
         let points = match &options.along {
-            Some(CurveSpec::Points { file }) => Some(InputReport::of(file)),
+            Some(CurveSpec::Points { file } | CurveSpec::Model { file }) => Some(InputReport::of(file)),
             _ => None,
         };
         match ground.area.region().is_empty() {

@@ -34,6 +34,7 @@ use super::output::{Output, Pending, Target, persist};
 use super::part::Part;
 use super::report::{FlatPattern, InputReport};
 use super::stage::{Clock, Stage};
+use super::surface::SurfaceOptions;
 use crate::exemplar::Linework;
 use crate::fabricate::Counts;
 use crate::planar::{FillRule, Grid, Region};
@@ -97,7 +98,7 @@ impl Fill {
         let read = clock.time(Stage::Read, || given::read(&options.exemplar, chord_mm, options.stroke_mm));
         let (exemplar, linework) = read?;
         let mut notes = linework.notes().to_vec();
-        notes.extend(sheet.as_ref().and_then(|sheet| sheet.note.clone()));
+        notes.extend(sheet.iter().flat_map(|sheet| &sheet.notes).cloned());
         let pens_mm = exemplar.curves.iter().map(|curve| curve.width_mm);
         let pen_mm = pens_mm.fold(options.frame_mm.unwrap_or(0.0), f64::max);
         let mut ground = clock.time(Stage::Read, || Ground::new(job, sheet.as_ref(), pen_mm))?;
@@ -286,7 +287,11 @@ impl Fill {
             seed: Some(options.constants.seed),
             bridges: self.bridges.as_ref().map_or(&[][..], |report| &report.bridges),
             making: &options.making,
-            lain: self.sheet.as_ref().map(|(sheet, part)| Lain { part, map: &sheet.map }),
+            lain: self.sheet.as_ref().map(|(sheet, part)| Lain {
+                part,
+                map: &sheet.map,
+                ground: sheet.model.as_ref(),
+            }),
         };
         let blamed = outputs.first().map_or_else(|| "the pattern".into(), |output| name(output.target()));
         let made = flat.made(&blamed, outputs, &mut clock)?;
@@ -299,6 +304,7 @@ impl Fill {
             domain: options.domain.to_string(),
             along: options.along.as_ref().map(ToString::to_string),
             width_mm: options.width_mm,
+            surface: options.surface.as_ref().map(SurfaceOptions::report),
             domain_file: self.domain_file.clone(),
             kept: self.kept.clone(),
             domain_mm2: self.domain_mm2,

@@ -9,7 +9,7 @@ use crate::job::bridging::BridgesReport;
 use crate::job::json;
 use crate::job::laser::LaserReport;
 use crate::job::making::{EnforcedReport, Quantities};
-use crate::job::report::{FlatPattern, InputReport, StageTime};
+use crate::job::report::{FlatPattern, InputReport, StageTime, SurfaceReport};
 use crate::samples::LevelReport;
 use crate::verify::{MeshReport, NarrowPlaces, SvgReport};
 
@@ -28,7 +28,9 @@ pub struct FillReport {
     pub along: Option<String>,
     /// The width of a band.
     pub width_mm: Option<f64>,
-    /// The file that the domain or its curve comes from, if it does.
+    /// What was asked of a band on a model; null for others.
+    pub surface: Option<SurfaceReport>,
+    /// The file that the domain, its curve or its model comes from, if it does.
     pub domain_file: Option<InputReport>,
     /// The strokes that were kept, if there were some.
     pub kept: Option<InputReport>,
@@ -44,9 +46,10 @@ pub struct FillReport {
     pub wanted_components: Option<[u32; 2]>,
     /// The least and the greatest number of holes that were asked for.
     pub wanted_holes: Option<[u32; 2]>,
-    /// Components of the written files.
+    /// Components of the pattern, as it stands. They are those of the written files, but for a model that is one with it and a drawing that was
+    /// cut open.
     pub components: usize,
-    /// Holes of the written files.
+    /// Holes of the pattern, likewise.
     pub holes: usize,
     /// What the drawing is of a strip in space; null for what lies in the plane.
     pub flat: Option<FlatPattern>,

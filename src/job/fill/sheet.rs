@@ -1,4 +1,4 @@
-//! A strip that is laid along a curve in space.
+//! A strip that is laid along a curve in space, or on a model.
 //!
 //! The pattern is made flat, and the drawing is that. The solid is the strip bent along the curve, by the same map as a band's; of a
 //! closed curve, the strip's two sides are one place and have the same ink.
@@ -14,6 +14,7 @@ use crate::job::error::JobError;
 use crate::job::joined::Joined;
 use crate::job::part::Part;
 use crate::job::space;
+use crate::job::surface;
 use crate::planar::{GridPoint, Region, Tolerances};
 use crate::verify;
 
@@ -24,24 +25,30 @@ const PLACES: i64 = 256;
 #[derive(Debug, Clone)]
 pub(super) struct Sheet {
     pub(super) map: SpaceMap,
+    /// The model that it lies on.
+    pub(super) model: Option<surface::Ground>,
     /// Those of the flat pattern, so that what was asked for holds where the strip is bent.
     pub(super) tolerances: Tolerances,
-    /// What to say of them.
-    pub(super) note: Option<String>,
+    /// What to say of them, and of the model.
+    pub(super) notes: Vec<String>,
 }
 
 impl Sheet {
     /// That of a job whose curve is one in space.
     ///
     /// # Errors
-    /// [`JobError`] when the curve cannot be read or carry the strip.
+    /// [`JobError`] when the curve or the model cannot be read or carry the strip.
     pub(super) fn new(job: &FillJob) -> Result<Option<Self>, JobError> {
         let options = &job.options;
         let Some((along, width_mm)) = options.along.as_ref().zip(options.width_mm) else { return Ok(None) };
         let making = &options.making;
         let asked = &making.tolerances;
         // A band of that curve knows how it lies.
-        let band = BandBuilder::new(&options.exemplar, along.clone())
+        let band = match &options.surface {
+            Some(surface) => BandBuilder::on_model(&options.exemplar, surface.clone()),
+            None => BandBuilder::new(&options.exemplar, along.clone()),
+        };
+        let band = band
             .width_mm(width_mm)
             .thickness_mm(making.thickness_mm)
             .chord_mm(asked.chord_mm())
@@ -52,12 +59,16 @@ impl Sheet {
             .space(options.space.clone());
         let band = options.round_mm.into_iter().fold(band, BandBuilder::round_mm);
         let band = options.bridge_mm.into_iter().fold(band, BandBuilder::bridge_mm);
-        let band = band.build()?;
+        let mut band = band.build()?;
+        band.ground = options.surface.as_ref().map(surface::Ground::new).transpose()?;
+        // Of what is carved out of a model, ink is the gaps.
+        let asked = &band.tolerances;
         let Some(curve) = space::read_space_curve(&band)? else { return Ok(None) };
         let map = space::space_map(&band, curve, width_mm)?;
         let tolerances = space::flat_tolerances(asked, &map)?;
-        let note = space::note(asked, &tolerances);
-        Ok(Some(Self { map, tolerances, note }))
+        let read = band.ground.iter().flat_map(surface::Ground::notes).cloned();
+        let notes = read.chain(space::note(asked, &tolerances)).collect();
+        Ok(Some(Self { map, tolerances, notes, model: band.ground }))
     }
 
     /// Whether the strip's sides are one place.

@@ -100,12 +100,29 @@ impl Ground {
         }
     }
 
-    /// The model with `band` on it, or without what is in the band.
-    pub(in super::super) fn merged(&self, band: &Solid) -> Result<Solid, JobError> {
+    /// What becomes of a `band` whose pattern has these counts: itself, or the model with it or without what is in it. What the user may
+    /// want to know of that is added to `notes`.
+    ///
+    /// # Errors
+    /// As [`Ground::merged_counts`], and for a model that is not sound.
+    pub(in super::super) fn merged(
+        &self,
+        band: Solid,
+        pattern: Counts,
+        notes: &mut Vec<String>,
+    ) -> Result<Solid, JobError> {
+        let Some(MergedCounts { shells, genus }) = self.merged_counts(pattern)? else { return Ok(band) };
+        notes.push(format!("the model with the pattern: {shells} shell(s) of a genus of {genus} in all"));
+        if self.is_through() && pattern.holes > 0 {
+            notes.push(format!(
+                "carved through, the pattern parts the model into {} pieces, one more than it has holes; --holes 0 leaves it in one",
+                pattern.holes + 1
+            ));
+        }
         let model = self.model()?;
         Ok(match self.options().mode {
-            SurfaceMode::Carve => fabricate::difference(&model, band)?,
-            _ => fabricate::union(&[&model, band])?,
+            SurfaceMode::Carve => fabricate::difference(&model, &band)?,
+            _ => fabricate::union(&[&model, &band])?,
         })
     }
 }

@@ -8,7 +8,7 @@ mod merged;
 mod under;
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use glam::DVec3;
@@ -108,6 +108,14 @@ pub enum RouteError {
 }
 
 impl SurfaceOptions {
+    /// The file that the curve comes from, if it does.
+    pub(super) fn curve_file(&self) -> Option<&Path> {
+        match &self.route {
+            Route::Curve(file) => Some(file),
+            Route::Through { .. } | Route::Around(_) => None,
+        }
+    }
+
     /// What reports say of it.
     pub(super) fn report(&self) -> SurfaceReport {
         SurfaceReport {
