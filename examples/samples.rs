@@ -114,7 +114,7 @@ fn made(
 ) -> Result<FillReport, Box<dyn Error>> {
     let builder = adapt(FillBuilder::new(exemplar(name), DOMAIN.parse()?).seed(SEED));
     let fill = builder.build()?.run(&mut |_| {})?;
-    Ok(fill.write(&[Output::file(&drawn(folder, name, what))?], None, &mut |_| {})?)
+    Ok(fill.write(&[Output::file(drawn(folder, name, what))?], None, &mut |_| {})?)
 }
 
 /// Counts for each 100 cm2 beside the exemplar's, the means of several seeds.

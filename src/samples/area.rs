@@ -51,7 +51,7 @@ impl Area {
         }
     }
 
-    /// Whether a position lies inside, decided exactly on the region's grid; the border is inside.
+    /// Whether a position lies inside, decided exactly on the region's grid. On the outer border it does not, on that of a hole it does.
     pub fn contains(&self, p: DVec2) -> bool {
         let Ok(p) = self.region.grid().snap(self.home(p)) else { return false };
         self.region.parts().iter().any(|part| part.covers(p))

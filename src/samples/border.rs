@@ -125,3 +125,24 @@ fn front(cubic: &[DVec2; 4], t: f64) -> [DVec2; 4] {
     let (abc, bcd) = (ab.lerp(bc, t), bc.lerp(cd, t));
     [a, ab, abc, abc.lerp(bcd, t)]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::area::tests::square;
+    use crate::samples::sampling::curve_sample;
+
+    #[test]
+    fn edges_end_on_the_border_and_scraps_go() {
+        let points = [(5.0, 5.0), (13.0, 5.0), (9.0, 9.5), (12.0, 11.0), (2.0, 2.0)];
+        let samples = points.iter().map(|&(x, y)| curve_sample(DVec2::new(x, y), 1.0)).collect();
+        let edge = |a: usize, b: usize, h: DVec2| Edge { ends: [a, b], confidence: 1.0, handles: [h, -h] };
+        let edges = vec![edge(0, 1, DVec2::X), edge(2, 3, DVec2::new(1.0, 0.5))];
+        let mut graph = Graph { samples, edges, unrealised: Vec::new() };
+        cut(&mut graph, &mut Elements::default(), &square(10.0), 2.0);
+        // The long edge is cut at x = 10; what is left of the short one is a scrap, and a sample alone draws nothing.
+        assert_eq!((graph.samples.len(), graph.edges.len()), (2, 1));
+        let end = graph.samples[graph.edges[0].ends[1]].at;
+        assert!(end.distance(DVec2::new(10.0, 5.0)) < 1e-6 && square(10.0).contains(end), "{end}");
+    }
+}

@@ -1,7 +1,7 @@
 //! Which samples are joined: the votes of all neighbourhoods, taken greedily (Tu 2020 §4.3.4, Eq. 16 to 21).
 
 use glam::DVec2;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::area::Area;
 use super::graph::{Edge, Graph};
@@ -53,17 +53,19 @@ pub fn join(graph: &mut Graph, source: &Source, matchings: &[Matching], area: &A
     let mut candidates: Vec<((usize, usize), Votes)> = votes.into_iter().collect();
     candidates.sort_unstable_by_key(|candidate| candidate.0);
     count_all(&mut candidates, matchings, n);
+    let fixed: Vec<Edge> = given(graph).collect();
+    let is_given: FxHashSet<[usize; 2]> = fixed.iter().map(|edge| edge.ends).collect();
     let mut edges: Vec<Edge> = candidates
         .into_iter()
+        .filter(|((a, b), _)| !is_given.contains(&[*a, *b]))
         .map(|((a, b), votes)| Edge {
             ends: [a, b],
             confidence: votes.edges / votes.all,
             handles: votes.handles.map(|sum| sum / votes.edges),
         })
         .collect();
-    edges.extend(given(graph));
+    edges.extend(fixed);
     edges.sort_by(|a, b| b.confidence.total_cmp(&a.confidence).then(a.ends.cmp(&b.ends)));
-    edges.dedup_by_key(|edge| edge.ends);
     let wanted: Vec<f64> =
         degrees.iter().map(|[sum, count]| if *count > 0.0 { sum / count } else { 0.0 }).collect();
     choose(graph, edges, &wanted, area, options.least_edge);

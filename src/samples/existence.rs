@@ -59,18 +59,24 @@ pub fn missing(
             if !is_wanted(kind) || !area.contains(at) {
                 continue;
             }
-            let (x, y) = cell(at);
-            let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (x + dx, y + dy)));
+            // Rolled, a cluster may lie beyond the seam.
+            let laps = area.lap_mm().map_or(vec![0.0], |lap_mm| vec![0.0, lap_mm, -lap_mm]);
+            let around = laps.into_iter().flat_map(|lap_mm| {
+                let (x, y) = cell(at + DVec2::new(lap_mm, 0.0));
+                (-1..=1).flat_map(move |dy| (-1..=1).map(move |dx| (x + dx, y + dy)))
+            });
             let nearest = around
                 .filter_map(|key| cells.get(&key))
                 .flatten()
                 .filter(|&&c| clusters[c].kind == kind)
-                .map(|&c| (clusters[c].middle().distance(at), c))
+                .map(|&c| (area.way(clusters[c].middle(), at).length(), c))
                 .filter(|(d, _)| *d < near_mm)
                 .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             match nearest {
                 Some((_, c)) => {
                     let old = cell(clusters[c].middle());
+                    let middle = clusters[c].middle();
+                    let at = middle + area.way(middle, at);
                     clusters[c].sum += at * matching.weight;
                     clusters[c].weight += matching.weight;
                     clusters[c].members.push((at, input));
@@ -81,7 +87,7 @@ pub fn missing(
                     }
                 }
                 None => {
-                    cells.entry((x, y)).or_default().push(clusters.len());
+                    cells.entry(cell(at)).or_default().push(clusters.len());
                     clusters.push(Cluster {
                         kind,
                         sum: at * matching.weight,
@@ -109,8 +115,71 @@ pub fn missing(
                 a.0.distance_squared(at).total_cmp(&b.0.distance_squared(at)).then(a.1.cmp(&b.1))
             })?;
             let like = &source.graph.samples[input];
-            let sample = Sample { at, existence: existence.min(1.0), is_given: false, ..like.clone() };
+            let sample =
+                Sample { at: area.home(at), existence: existence.min(1.0), is_given: false, ..like.clone() };
             Some((sample, input))
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::area::tests::{rolled, square};
+    use crate::samples::sampling::curve_sample;
+
+    fn graph(points: &[(f64, f64)]) -> Graph {
+        let samples = points.iter().map(|&(x, y)| curve_sample(DVec2::new(x, y), 1.0)).collect();
+        Graph { samples, ..Graph::default() }
+    }
+
+    fn seen(middle: usize, pairs: &[(usize, Option<usize>)], missing: &[(usize, DVec2)]) -> Matching {
+        Matching { middle, weight: 1.0, pairs: pairs.to_vec(), missing: missing.to_vec() }
+    }
+
+    fn found(graph: &Graph, matchings: &[Matching], area: &Area) -> Vec<DVec2> {
+        let source = Source::new(
+            super::tests::graph(&[(10.0, 10.0), (14.0, 10.0)]),
+            (DVec2::ZERO, DVec2::splat(20.0)),
+            8.0,
+        );
+        let options = Options::default();
+        let all = missing(graph, &source, matchings, area, &options, (8.0, 4.0), |_| true);
+        all.into_iter().map(|(sample, _)| sample.at).collect()
+    }
+
+    /// Eq. 15 as in Tu 2020 Figure 7: the part of the neighbourhoods that have a match.
+    #[test]
+    fn existence_is_the_part_of_those_that_match() {
+        let mut three = graph(&[(1.0, 1.0), (2.0, 1.0), (3.0, 1.0)]);
+        let both = [(0, Some(0)), (1, Some(1))];
+        let matchings =
+            [seen(0, &both, &[]), seen(1, &both, &[]), seen(0, &[(2, None), (0, None), (1, Some(1))], &[])];
+        believe(&mut three, &matchings);
+        let existence: Vec<f64> = three.samples.iter().map(|s| s.existence).collect();
+        assert!((existence[0] - 2.0 / 3.0).abs() < 1e-12 && existence[1..] == [1.0, 0.0], "{existence:?}");
+    }
+
+    /// Algorithm 1: what two of three neighbourhoods over a place lack is added, what one lacks is not, and nothing is added outside.
+    #[test]
+    fn what_most_lack_is_added() {
+        let three = graph(&[(10.0, 10.0), (12.0, 10.0), (11.0, 12.0)]);
+        let lacks = |dx: f64, dy: f64| vec![(1, DVec2::new(dx, dy))];
+        let two = [seen(0, &[], &lacks(4.0, 0.0)), seen(0, &[], &lacks(2.2, 0.0)), seen(0, &[], &[])];
+        let added = found(&three, &two, &square(50.0));
+        assert_eq!(added.len(), 1);
+        assert!(added[0].distance(DVec2::new(14.1, 10.0)) < 1e-9, "{added:?}");
+        let one = [seen(0, &[], &lacks(4.0, 0.0)), seen(0, &[], &[]), seen(0, &[], &[])];
+        assert!(found(&three, &one, &square(50.0)).is_empty());
+        assert!(found(&three, &two, &square(13.0)).is_empty());
+    }
+
+    #[test]
+    fn clusters_lie_over_a_seam() {
+        let two = graph(&[(98.0, 10.0), (2.0, 10.0)]);
+        let lacks = |dx: f64| vec![(1, DVec2::new(dx, 0.0))];
+        let matchings = [seen(0, &[], &lacks(1.9)), seen(0, &[], &lacks(-1.9))];
+        let added = found(&two, &matchings, &rolled(100.0, 20.0));
+        assert_eq!(added.len(), 1, "{added:?}");
+    }
 }

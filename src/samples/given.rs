@@ -7,7 +7,9 @@ use super::area::Area;
 use super::drawing::Drawing;
 use super::elements::Elements;
 use super::graph::Graph;
+use super::level::SampleError;
 use super::neighbours::Buckets;
+use super::options::{Options, Start};
 use super::sampling::{Resolution, sampled};
 use super::start::CloneBox;
 
@@ -21,6 +23,37 @@ pub struct Given {
 }
 
 impl Given {
+    /// Refuses clones that would copy nothing.
+    pub(super) fn check(
+        &self,
+        (low, high): (DVec2, DVec2),
+        area: &Area,
+        options: &Options,
+    ) -> Result<(), SampleError> {
+        let refuse = |found: String, wanted| Err(SampleError::Option { name: "--clone", found, wanted });
+        for clone in &self.clones {
+            let (from, to) = (clone.from_mm - clone.half_mm, clone.from_mm + clone.half_mm);
+            if to.cmplt(low).any() || from.cmpgt(high).any() {
+                let found = format!(
+                    "from {:.2}, {:.2} to {:.2}, {:.2} mm, outside of the exemplar, which reaches from {:.2}, {:.2} to {:.2}, {:.2} mm",
+                    from.x, from.y, to.x, to.y, low.x, low.y, high.x, high.y
+                );
+                return refuse(found, "a box of the exemplar");
+            }
+            if !area.contains(clone.to_mm) {
+                let found =
+                    format!("copied to {:.2}, {:.2} mm, outside of the domain", clone.to_mm.x, clone.to_mm.y);
+                return refuse(found, "a place whose middle is inside of it");
+            }
+        }
+        match self.clones.is_empty() || options.start == Start::Patches {
+            true => Ok(()),
+            false => {
+                refuse("a copy beside --start noise".to_owned(), "--start patches, which lays copies first")
+            }
+        }
+    }
+
     /// What is drawn, as samples that stay. Elements are ink, and no part of the pattern.
     pub(super) fn sampled(&self, elements: &Elements, resolution: Resolution) -> Graph {
         let none = Elements { classes: elements.classes.clone(), placed: Vec::new() };

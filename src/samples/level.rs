@@ -1,10 +1,12 @@
 //! What is told of a level, and what is refused.
 
+use glam::DVec2;
 use serde::Serialize;
 use thiserror::Error;
 
 use super::area::Area;
 use super::graph::Graph;
+use super::neighbours::Buckets;
 use super::options::{Level, Options};
 use super::search::Found;
 use super::source::Source;
@@ -136,20 +138,18 @@ pub(super) fn energy(graph: &Graph, found: &[Found], area: &Area) -> f64 {
     costs + outside.map(|s| area.depth_mm(s.at)).sum::<f64>()
 }
 
-/// The limit of neighbourhoods.
-pub(super) struct Limit;
-
-impl Limit {
-    pub(super) fn check(largest: usize, level: Level) -> Result<(), SampleError> {
-        match largest > MOST_NEIGHBOURS {
-            true => Err(SampleError::Crowded {
-                largest,
-                radius_mm: level.radius_mm,
-                spacing_mm: level.spacing_mm,
-            }),
-            false => Ok(()),
+/// Refuses neighbourhoods of too many samples, before there is a list of them.
+pub(super) fn check_crowd(points: &[DVec2], level: Level, area: Option<&Area>) -> Result<(), SampleError> {
+    let buckets = Buckets::new(points, level.radius_mm, area);
+    for &p in points {
+        let mut largest = 0;
+        buckets.within(p, level.radius_mm, |_, _| largest += 1);
+        if largest > MOST_NEIGHBOURS {
+            let Level { radius_mm, spacing_mm } = level;
+            return Err(SampleError::Crowded { largest, radius_mm, spacing_mm });
         }
     }
+    Ok(())
 }
 
 pub(super) fn check(options: &Options, area: &Area) -> Result<(), SampleError> {
@@ -172,6 +172,29 @@ pub(super) fn check(options: &Options, area: &Area) -> Result<(), SampleError> {
         let all: Vec<String> = options.levels.iter().map(|level| level.spacing_mm.to_string()).collect();
         return refuse("--spacing", all.join(", "), "lengths from coarse to fine");
     }
+    let [widest, narrowest] = options.windows;
+    if !(narrowest > 0.0 && narrowest <= widest && widest.is_finite()) {
+        return refuse(
+            "--windows",
+            format!("{widest}, {narrowest}"),
+            "two numbers above 0, the larger one first",
+        );
+    }
+    let numbers = [
+        ("--cluster", options.cluster, options.cluster > 0.0),
+        ("--attribute-weight", options.attribute_weight, options.attribute_weight >= 0.0),
+        ("--edge-count-price", options.edge_count_price, options.edge_count_price >= 0.0),
+        ("--missing-price", options.missing_price, options.missing_price >= 0.0),
+        ("--vote-power", options.vote_power, options.vote_power >= 0.0),
+    ];
+    if let Some((name, value, _)) =
+        numbers.into_iter().find(|(_, value, is_good)| !(*is_good && value.is_finite()))
+    {
+        return refuse(name, value.to_string(), "a number that is not below 0; above it for --cluster");
+    }
+    if options.search_neighbours == 0 || options.passes.contains(&0) {
+        return refuse("--search-neighbours or --passes", "0".to_owned(), "1 or more");
+    }
     let (low, high) = area.bounds_mm();
     let size = high - low;
     let radius_mm = options.levels.iter().map(|level| level.radius_mm).fold(0.0, f64::max);
@@ -186,7 +209,6 @@ pub(super) fn check_source(source: &Source, level: Level) -> Result<(), SampleEr
     if samples == 0 {
         return Err(SampleError::Empty);
     }
-    Limit::check(largest, level)?;
     match largest < LEAST_NEIGHBOURS {
         true => Err(SampleError::Sparse { samples, largest, radius_mm: level.radius_mm }),
         false => Ok(()),

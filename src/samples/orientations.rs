@@ -38,9 +38,9 @@ struct Votes {
 }
 
 impl Votes {
-    fn add(&mut self, direction: f64) {
-        self.sum += DVec2::from_angle(direction);
-        self.count += 1.0;
+    fn add(&mut self, direction: f64, weight: f64) {
+        self.sum += DVec2::from_angle(direction) * weight;
+        self.count += weight;
     }
 
     /// One less the length of the mean: 0 if all are the same.
@@ -51,10 +51,10 @@ impl Votes {
 
 /// Sets the directions of all samples of curves that the maker did not give, and the width of their pen.
 pub fn turn_all(graph: &mut Graph, source: &Source, matchings: &[Matching], seed: u64, purpose: &[u64]) {
-    let mut inputs: Vec<Vec<usize>> = vec![Vec::new(); graph.samples.len()];
+    let mut inputs: Vec<Vec<(usize, f64)>> = vec![Vec::new(); graph.samples.len()];
     for matching in matchings {
         for &(s, input) in &matching.pairs {
-            inputs[s].extend(input);
+            inputs[s].extend(input.map(|input| (input, matching.weight)));
         }
     }
     let mut problem = Assignment::default();
@@ -65,22 +65,22 @@ pub fn turn_all(graph: &mut Graph, source: &Source, matchings: &[Matching], seed
         let mut votes = vec![Votes::default(); sample.orientations.len()];
         let mut spare: Vec<f64> = Vec::new();
         let (mut number, mut width_mm) = (0.0, 0.0);
-        for &input in &inputs[s] {
+        for &(input, weight) in &inputs[s] {
             let theirs = &source.graph.samples[input];
-            number += theirs.orientations.len() as f64;
-            width_mm += theirs.width_mm;
+            number += weight * theirs.orientations.len() as f64;
+            width_mm += weight * theirs.width_mm;
             let mut is_taken = vec![false; theirs.orientations.len()];
             for (own, other) in
                 matched(&sample.orientations, &theirs.orientations, &mut problem).into_iter().enumerate()
             {
                 if let Some(other) = other {
-                    votes[own].add(theirs.orientations[other]);
+                    votes[own].add(theirs.orientations[other], weight);
                     is_taken[other] = true;
                 }
             }
             spare.extend(theirs.orientations.iter().zip(is_taken).filter(|(_, t)| !t).map(|(o, _)| *o));
         }
-        let count = inputs[s].len() as f64;
+        let count: f64 = inputs[s].iter().map(|(_, weight)| weight).sum();
         sample.width_mm = width_mm / count;
         let wanted = (number / count).round() as usize;
         let mut own: Vec<(f64, f64)> = sample

@@ -195,7 +195,8 @@ fn lay(
         false if pairs.contains(&key) => 2,
         false => 1,
     };
-    if from.node == to.node && length_mm < spacing_mm {
+    // A loop on a fork that the pen covers is the fork.
+    if from.node == to.node && length_mm < line.length_mm() && length_mm < line.width_mm {
         return;
     }
     let count = ((length_mm / spacing_mm).round() as usize).max(least);

@@ -5,13 +5,16 @@ use glam::DVec2;
 use super::area::Area;
 use super::assignment::Assignment;
 use super::graph::{Adjacency, Graph, Kind};
-use super::neighbours::Neighbourhoods;
+use super::neighbours::{Near, Neighbourhoods};
 use super::options::Options;
 use super::parallel::in_parallel;
 use super::source::Source;
 
 /// The price of leaving alone a sample that the maker gave, in parts of δ, in place of the paper's infinity: more than a neighbourhood of others.
 const GIVEN_PRICE: f64 = 100.0;
+
+/// Up to so many edges all ways are tried, which is faster than an assignment problem; samples rarely have more.
+const MOST_TRIED: usize = 4;
 
 /// Costs for each sample well below this part of δ do not count for more.
 const VOTE_FLOOR: f64 = 0.1;
@@ -164,7 +167,10 @@ impl<'a> Likeness<'a> {
 /// The mean distance from a sample of an element to the nearest other one of another element, in millimetres.
 fn mean_nearest(near: &Neighbourhoods, graph: &Graph) -> f64 {
     let nearest = |s: usize| {
-        let others = near.of(s)[1..].iter().filter(|n| graph.samples[n.sample].kind != Kind::Curve);
+        let own = graph.samples[s].element;
+        let is_other =
+            |n: &&Near| graph.samples[n.sample].kind != Kind::Curve && graph.samples[n.sample].element != own;
+        let others = near.of(s)[1..].iter().filter(is_other);
         others.map(|n| n.offset.length()).min_by(f64::total_cmp)
     };
     let elements = (0..graph.samples.len()).filter(|&s| graph.samples[s].kind != Kind::Curve);
@@ -205,20 +211,53 @@ pub fn edge_difference(a: &[DVec2], b: &[DVec2], beta: f64) -> f64 {
         return 0.0;
     }
     let (few, many) = if a.len() <= b.len() { (a, b) } else { (b, a) };
-    least(few, many, 0) + beta * (many.len() - few.len()) as f64
+    let matched = if many.len() > MOST_TRIED { assigned(few, many) } else { least(few, many, 0) };
+    matched + beta * (many.len() - few.len()) as f64
 }
 
-/// The least sum over all ways to give each of `few` one of `many`, of those not in `taken`.
+/// The least sum as an assignment problem.
+fn assigned(few: &[DVec2], many: &[DVec2]) -> f64 {
+    let mut problem = Assignment::default();
+    problem.clear(many.len());
+    for a in few {
+        many.iter().enumerate().for_each(|(column, b)| problem.price(column, a.distance(*b)));
+        // Dearer than all matches together, so that nobody stays alone.
+        problem.end_row(many.iter().chain(few).map(|v| 2.0 * v.length()).sum::<f64>() + 1.0);
+    }
+    problem.solve()
+}
+
+/// The least sum over all ways to give each of `few` one of `many`, of those not in the bits of `taken`.
 fn least(few: &[DVec2], many: &[DVec2], taken: u32) -> f64 {
     let Some((first, rest)) = few.split_first() else { return 0.0 };
-    // Stars of more than so many rays are rare, and trying all ways would take for ever: the nearest ray that is free will do.
-    let is_free = |j: &usize| taken & (1 << (j % 32)) == 0;
-    if many.len() > 6 {
-        let nearest = (0..many.len().min(32))
-            .filter(is_free)
-            .min_by(|&i, &j| first.distance_squared(many[i]).total_cmp(&first.distance_squared(many[j])));
-        return nearest.map_or(0.0, |j| first.distance(many[j]) + least(rest, many, taken | 1 << j));
-    }
-    let ways = (0..many.len()).filter(is_free);
+    let ways = (0..many.len()).filter(|j| taken & (1 << j) == 0);
     ways.map(|j| first.distance(many[j]) + least(rest, many, taken | 1 << j)).fold(f64::INFINITY, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Eq. 5 by hand: the nearest edges go together, and each that is left over costs β.
+    #[test]
+    fn edges_are_matched_and_counted() {
+        let [right, up, left] = [DVec2::X, DVec2::Y, DVec2::NEG_X];
+        assert_eq!(edge_difference(&[right], &[right], 5.0), 0.0);
+        assert_eq!(edge_difference(&[right, up], &[up, right], 5.0), 0.0);
+        assert_eq!(edge_difference(&[right], &[left], 5.0), 2.0);
+        assert_eq!(edge_difference(&[right, up], &[up], 5.0), 5.0);
+        assert_eq!(edge_difference(&[up], &[left, up * 1.5, right], 5.0), 0.5 + 10.0);
+        // A new sample differs from none, but a sample with edges differs from one without.
+        assert_eq!(edge_difference(&[], &[right, up], 5.0), 0.0);
+        assert_eq!(edge_difference(&[right, up], &[], 5.0), 10.0);
+    }
+
+    #[test]
+    fn the_least_of_all_ways_is_found_for_stars() {
+        let star =
+            |turn: f64| (0..8).map(|i| DVec2::from_angle(turn + f64::from(i) * 0.785)).collect::<Vec<_>>();
+        let (a, b) = (star(0.0), star(0.1));
+        let each = DVec2::X.distance(DVec2::from_angle(0.1));
+        assert!((edge_difference(&a, &b, 1.0) - 8.0 * each).abs() < 1e-9);
+    }
 }

@@ -17,8 +17,6 @@ use super::source::Source;
 
 /// The side of a patch as a part of the exemplar's shorter side.
 const PATCH: f64 = 0.5;
-/// A narrow exemplar has patches as if its shorter side were this part of the longer one.
-const NARROWEST: f64 = 0.2;
 /// How far patches overlap, as a part of their side.
 const OVERLAP: f64 = 0.35;
 /// Places of the exemplar that are tried for a patch.
@@ -105,9 +103,7 @@ fn laid(
     }
     let (low, high) = source.bounds_mm;
     let (area_low, area_high) = area.bounds_mm();
-    // A single line has a box without a height.
-    let (shorter, longer) = ((high - low).min_element(), (high - low).max_element());
-    let half = DVec2::splat(0.5 * PATCH * shorter.max(NARROWEST * longer));
+    let half = DVec2::splat(0.5 * PATCH * (high - low).min_element());
     let step = 2.0 * half * (1.0 - OVERLAP);
     let size = area_high - area_low;
     let count = ((size - if area.lap_mm().is_some() { DVec2::new(0.0, 2.0 * half.y) } else { 2.0 * half })

@@ -12,7 +12,7 @@ use super::elements::{Elements, Placed, Similarity};
 use super::existence;
 use super::given::Given;
 use super::graph::{Graph, Kind, Sample};
-use super::level::{LevelReport, Limit, SampleError};
+use super::level::{LevelReport, SampleError};
 use super::neighbours::Neighbourhoods;
 use super::options::{Border, Level, Options, Start, Without};
 use super::orientations;
@@ -23,6 +23,9 @@ use super::search::{Found, Route, matchings, search};
 use super::similarity::{Likeness, Matching};
 use super::source::Source;
 use super::start;
+
+/// A narrow exemplar has patches and margins as if its shorter side were this part of the longer one.
+const NARROWEST: f64 = 0.2;
 
 /// What the border cuts off in less line than this part of the finest spacing is a scrap.
 const SCRAP: f64 = 0.8;
@@ -58,16 +61,24 @@ pub fn synthesize(
         Border::Within => area.clone(),
     };
     let elements = Elements::of(&exemplar.elements);
-    let bounds_mm = exemplar.bounds_mm().ok_or(SampleError::Empty)?;
+    let bounds_mm = roomy(exemplar.bounds_mm().ok_or(SampleError::Empty)?);
+    given.check(bounds_mm, wanted, options)?;
     let levels = options.levels.len();
     let mut output = Output { graph: Graph::default(), placed: Vec::new(), found: Vec::new() };
     let mut reports = Vec::new();
     for (number, &level) in options.levels.iter().enumerate() {
         let began = Instant::now();
         let resolution = Resolution { level: number, levels, spacing_mm: level.spacing_mm };
-        let source = Source::new(sampled(exemplar, &elements, resolution), bounds_mm, level.radius_mm);
+        let learnt = sampled(exemplar, &elements, resolution);
+        let points: Vec<DVec2> = learnt.samples.iter().map(|s| s.at).collect();
+        super::level::check_crowd(&points, level, None)?;
+        let source = Source::new(learnt, bounds_mm, level.radius_mm);
         super::level::check_source(&source, level)?;
-        let fixed = given.sampled(&elements, resolution);
+        // Beside a pattern of elements alone, strokes are no part of it.
+        let fixed = match exemplar.curves.is_empty() {
+            true => Graph::default(),
+            false => given.sampled(&elements, resolution),
+        };
         let run = Run { source: &source, elements: &elements, area, options, number, level };
         match number {
             0 => run.begin(&mut output, fixed, &given.clones),
@@ -87,6 +98,14 @@ pub fn synthesize(
         return Err(SampleError::NoRoom);
     }
     Ok(Synthesis { graph: output.graph, elements, given: given.drawing.clone(), levels: reports })
+}
+
+/// A box that is not narrower than a part of its length, around the same middle: a single straight line has no box to speak of.
+fn roomy((low, high): (DVec2, DVec2)) -> (DVec2, DVec2) {
+    let size = high - low;
+    let least = DVec2::splat(NARROWEST * size.max_element());
+    let more = (least - size).max(DVec2::ZERO) / 2.0;
+    (low - more, high + more)
 }
 
 /// The output between iterations.
@@ -198,17 +217,20 @@ impl Run<'_> {
             let passes = if is_last { 1 } else { self.options.passes[usize::from(iteration > 0)] };
             let began = Instant::now();
             let near = self.neighbourhoods(&output.graph)?;
-            let found = self.found(output, &near, passes, iteration);
+            let likeness = self.likeness(&output.graph, &near);
+            let found = self.found(output, &likeness, passes, iteration);
             report.search_seconds += began.elapsed().as_secs_f64();
             let energy = report.tell(&output.graph, &found, self.area);
-            if best.as_ref().is_none_or(|(least, _)| energy < *least) {
+            // Samples of noise have no edges, which cost nothing, and draw nothing.
+            let is_drawn = iteration > 0 || self.number > 0 || self.options.start == Start::Patches;
+            if (is_drawn || is_last) && best.as_ref().is_none_or(|(least, _)| energy < *least) {
                 let found = found.iter().map(|&(input, _)| Some(input)).collect();
                 best = Some((energy, Output { found, ..output.clone() }));
             }
             if is_last {
                 break;
             }
-            let matchings = matchings(&self.likeness(&output.graph, &near), &found);
+            let matchings = matchings(&likeness, &found);
             self.assign(output, &matchings, &found, iteration);
             if output.graph.samples.is_empty() {
                 return Err(SampleError::NoRoom);
@@ -229,26 +251,25 @@ impl Run<'_> {
         // What the search measures by did not change, so a pass is enough.
         let passes = if self.options.without == Without::default() { 1 } else { options.passes[0] };
         let run = Run { options, ..*self };
-        let found = run.found(output, near, passes, options.iterations + 1);
+        let likeness = run.likeness(&output.graph, near);
+        let found = run.found(output, &likeness, passes, options.iterations + 1);
         super::level::energy(&output.graph, &found, self.area)
     }
 
     fn neighbourhoods(&self, graph: &Graph) -> Result<Neighbourhoods, SampleError> {
         let points: Vec<DVec2> = graph.samples.iter().map(|s| s.at).collect();
-        let near = Neighbourhoods::new(&points, self.level.radius_mm, Some(self.area));
-        Limit::check(near.largest(), self.level)?;
-        Ok(near)
+        super::level::check_crowd(&points, self.level, Some(self.area))?;
+        Ok(Neighbourhoods::new(&points, self.level.radius_mm, Some(self.area)))
     }
 
     fn likeness<'b>(&'b self, graph: &'b Graph, near: &'b Neighbourhoods) -> Likeness<'b> {
         Likeness::new(self.source, (graph, near), self.area, self.options, self.level.spacing_mm)
     }
 
-    fn found(&self, output: &Output, near: &Neighbourhoods, passes: usize, iteration: usize) -> Vec<Found> {
+    fn found(&self, output: &Output, likeness: &Likeness<'_>, passes: usize, iteration: usize) -> Vec<Found> {
         let route = Route::new(&output.graph, self.area, self.options.search_neighbours);
         let purpose = [3, self.number as u64, iteration as u64];
-        let likeness = self.likeness(&output.graph, near);
-        search(&likeness, &route, &output.found, passes, self.options, &purpose)
+        search(likeness, &route, &output.found, passes, self.options, &purpose)
     }
 
     /// The assignment step: positions, edges, directions, and which samples there are.

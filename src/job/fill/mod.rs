@@ -160,6 +160,16 @@ impl Fill {
         if let Some(mended) = options.making.enforced(&fill.region, &mut clock)? {
             fill.notes.push(mended.report.note());
             (fill.region, fill.enforced) = (mended.region, Some(mended.report));
+            let lost_mm2 = kept_ink.without(&fill.region).area_mm2();
+            if lost_mm2 > ROUNDING_MM2 {
+                return Err(refused(
+                    "--enforce",
+                    format!(
+                        "gaps between the strokes of --keep are too narrow, and widening them would take {lost_mm2:.3} mm2 of these"
+                    ),
+                    "draw them farther apart, give a smaller --min-gap, or leave out --enforce",
+                ));
+            }
         }
         if let Some(sheet) = sheet {
             let part = sheet.part(fill.region.clone(), fill.page_mm, begin_mm, cut_mm)?;
@@ -357,6 +367,9 @@ fn laid(
     let (ink, cut_mm) = ground.opened(&ink)?;
     Ok((drawing, ink, cut_mm))
 }
+
+/// What outlines that cross lose by rounding, at the most.
+const ROUNDING_MM2: f64 = 1e-4;
 
 /// Parts of an exemplar's shorter side that are left out all around when it and what was made of it are counted, one after the other, as how a
 /// drawing ends is not what it is like inside. Of several windows the mean is steadier.

@@ -115,9 +115,13 @@ impl Tidy<'_, '_> {
         let mut pairs = Vec::new();
         for (i, &a) in self.open.iter().enumerate() {
             for &b in &self.open[..i] {
+                let [p, q] = [a, b].map(|end| scene.work.samples[end].at);
+                let way = scene.work.area.way(p, q);
+                if way.length() >= reach_mm {
+                    continue;
+                }
                 let (from, to) = (scene.port(a), scene.port(b));
-                let way = scene.work.area.way(from.at, to.at);
-                if way.length() < reach_mm && from.points_along(way) && to.points_along(-way) {
+                if from.points_along(way) && to.points_along(-way) {
                     pairs.push((way.length(), [b, a], Link::smooth(scene, &to, &from)));
                 }
             }
