@@ -3,7 +3,7 @@
 //!     cargo run --release --example samples -- FOLDER
 //!
 //! writes the drawings (SVG), the sheets that show them (`samples-1.png`, `samples-2.png`, `samples-without.png`) and the plot of energies
-//! (`samples-energies.svg`) to the folder, and prints the tables. The folder is that for temporary files if none is named.
+//! (`samples-energies.svg`) to the folder, and prints the tables. Without a folder one exemplar is tried.
 
 use std::error::Error;
 use std::fmt::Write;
@@ -21,7 +21,12 @@ const SEED: u64 = 1;
 const SEEDS: [u64; 5] = [1, 2, 3, 4, 5];
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let folder = std::env::args_os().nth(1).map_or_else(std::env::temp_dir, PathBuf::from);
+    let Some(folder) = std::env::args_os().nth(1).map(PathBuf::from) else {
+        let report = made(&std::env::temp_dir(), "scales", "free", |fill| fill.levels(1))?;
+        println!("{}: {} component(s), {} hole(s)", report.files.join(", "), report.components, report.holes);
+        println!("name a folder for all of it");
+        return Ok(());
+    };
     std::fs::create_dir_all(&folder)?;
     let free: Vec<FillReport> =
         EXEMPLARS.iter().map(|name| made(&folder, name, "free", |fill| fill)).collect::<Result<_, _>>()?;
