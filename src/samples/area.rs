@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::planar::{EdgeIndex, Region};
+use crate::planar::{EdgeIndex, GridPoint, Region};
 
 /// Corners of an area that is grown are round within this part of what it grows by.
 const GROWN_CHORD: f64 = 0.05;
@@ -12,13 +12,15 @@ const GROWN_CHORD: f64 = 0.05;
 pub struct Area {
     region: Region,
     index: EdgeIndex,
+    squares: Squares,
     lap_mm: Option<f64>,
 }
 
 impl Area {
     /// The inside of a region in millimetres, y up; it may have holes.
     pub fn new(region: Region) -> Self {
-        Self { index: EdgeIndex::new(&region), region, lap_mm: None }
+        let index = EdgeIndex::new(&region);
+        Self { squares: Squares::new(&region, &index), index, region, lap_mm: None }
     }
 
     /// The same, where x and x + `lap_mm` are one place. The region has to reach over one lap, from x = 0, and one half more on both sides.
@@ -54,7 +56,8 @@ impl Area {
     /// Whether a position lies inside, decided exactly on the region's grid. On the outer border it does not, on that of a hole it does.
     pub fn contains(&self, p: DVec2) -> bool {
         let Ok(p) = self.region.grid().snap(self.home(p)) else { return false };
-        self.region.parts().iter().any(|part| part.covers(p))
+        let square = self.squares.of(self.region.grid().to_mm(p));
+        square.unwrap_or_else(|| covers(&self.region, p))
     }
 
     /// The point of the border that is nearest, in the lap of `p`.
@@ -83,6 +86,49 @@ impl Area {
             Some(lap_mm) => DVec2::new(p.x.rem_euclid(lap_mm), p.y),
             None => p,
         }
+    }
+}
+
+fn covers(region: &Region, p: GridPoint) -> bool {
+    region.parts().iter().any(|part| part.covers(p))
+}
+
+/// Squares over the box of a region: those that no edge passes are inside or outside as a whole, which saves going round an outline of hundreds of vertices.
+#[derive(Clone)]
+struct Squares {
+    low: DVec2,
+    side: DVec2,
+    /// Row by row; `None` where edges pass.
+    inside: Vec<Option<bool>>,
+}
+
+/// Squares along each side.
+const SQUARES: usize = 64;
+/// Edges are looked for in squares that are larger by this part, so that rounding never hides one.
+const AROUND: f64 = 1e-3;
+
+impl Squares {
+    fn new(region: &Region, index: &EdgeIndex) -> Self {
+        let (low, high) = region.bounds_mm().unwrap_or_default();
+        let side = (high - low).max(DVec2::splat(f64::MIN_POSITIVE)) / SQUARES as f64;
+        let inside = (0..SQUARES * SQUARES).map(|i| {
+            let corner = low + side * DVec2::new((i % SQUARES) as f64, (i / SQUARES) as f64);
+            let around = side * AROUND;
+            match index.in_box(corner - around, corner + side + around).next() {
+                Some(_) => None,
+                None => region.grid().snap(corner + side / 2.0).ok().map(|middle| covers(region, middle)),
+            }
+        });
+        Self { low, side, inside: inside.collect() }
+    }
+
+    /// Whether the square of a place is inside; `None` where edges pass it.
+    fn of(&self, p: DVec2) -> Option<bool> {
+        let place = (p - self.low) / self.side;
+        if place.cmplt(DVec2::ZERO).any() || place.cmpge(DVec2::splat(SQUARES as f64)).any() {
+            return None;
+        }
+        self.inside[place.y as usize * SQUARES + place.x as usize]
     }
 }
 
@@ -115,6 +161,21 @@ pub(super) mod tests {
         assert_eq!(area.home(DVec2::new(-5.0, 3.0)), DVec2::new(95.0, 3.0));
         assert!(area.contains(DVec2::new(205.0, 3.0)) && !area.contains(DVec2::new(205.0, 30.0)));
         assert_eq!(square(10.0).way(DVec2::ZERO, DVec2::new(9.0, 0.0)), DVec2::new(9.0, 0.0));
+    }
+
+    #[test]
+    fn squares_say_what_the_outline_says() {
+        let grid = Grid::for_extent(100.0).unwrap();
+        let star: Vec<_> = (0..14)
+            .map(|i| DVec2::from_angle(f64::from(i) * 0.4488) * if i % 2 == 0 { 40.0 } else { 9.0 } + 45.0)
+            .map(|p| grid.snap(p).unwrap())
+            .collect();
+        let region = Region::fill(grid, &[star], FillRule::NonZero);
+        let area = Area::new(region.clone());
+        for i in 0..10_000 {
+            let p = DVec2::new(f64::from(i % 100), f64::from(i / 100)) * 0.9 + 0.123;
+            assert_eq!(area.contains(p), covers(&region, grid.snap(p).unwrap()), "{p}");
+        }
     }
 
     #[test]

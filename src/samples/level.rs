@@ -16,6 +16,9 @@ pub const MOST_NEIGHBOURS: usize = 400;
 /// Neighbourhoods of fewer samples of the exemplar than this say nothing.
 const LEAST_NEIGHBOURS: usize = 3;
 
+/// More samples than this are refused: at 1.5 ms for each that is more than a minute for each level.
+pub const MOST_SAMPLES: usize = 60_000;
+
 /// Why there is no pattern.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SampleError {
@@ -24,7 +27,7 @@ pub enum SampleError {
     Empty,
     /// One sample, or a few that are alone.
     #[error(
-        "the exemplar has {samples} sample(s), at most {largest} of them within {radius_mm:.2} mm of one another, and a pattern to learn needs at least {LEAST_NEIGHBOURS}: draw more of it, or use a larger --radii"
+        "the exemplar has {samples} sample(s), at most {largest} of them within {radius_mm:.2} mm of one another, and a pattern to learn needs at least {LEAST_NEIGHBOURS}: draw more strokes or shapes, or use a larger --radii; each filled shape is one sample, and an ornament that is one shape is for openwork band or rect"
     )]
     Sparse {
         /// Samples of the exemplar.
@@ -45,6 +48,18 @@ pub enum SampleError {
         radius_mm: f64,
         /// The spacing.
         spacing_mm: f64,
+    },
+    /// More samples than anyone waits for.
+    #[error(
+        "the domain would have about {samples:.0} samples, and more than {MOST_SAMPLES} take too long: the exemplar is {width_mm:.2} x {height_mm:.2} mm; use a larger --spacing, a smaller domain, or a larger exemplar (is its unit right?)"
+    )]
+    Many {
+        /// About as many samples as there would be.
+        samples: f64,
+        /// The width of the exemplar.
+        width_mm: f64,
+        /// Its height.
+        height_mm: f64,
     },
     /// The area is smaller than a neighbourhood.
     #[error(
@@ -204,7 +219,14 @@ pub(super) fn check(options: &Options, area: &Area) -> Result<(), SampleError> {
     Ok(())
 }
 
-pub(super) fn check_source(source: &Source, level: Level) -> Result<(), SampleError> {
+pub(super) fn check_source(source: &Source, level: Level, area: &Area) -> Result<(), SampleError> {
+    let size = source.bounds_mm.1 - source.bounds_mm.0;
+    let laps = area.lap_mm().map_or(1.0, |_| 0.5);
+    let expected =
+        source.graph.samples.len() as f64 * area.region().area_mm2() * laps / size.element_product();
+    if expected > MOST_SAMPLES as f64 {
+        return Err(SampleError::Many { samples: expected, width_mm: size.x, height_mm: size.y });
+    }
     let (samples, largest) = (source.graph.samples.len(), source.near.largest());
     if samples == 0 {
         return Err(SampleError::Empty);

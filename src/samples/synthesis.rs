@@ -73,7 +73,7 @@ pub fn synthesize(
         let points: Vec<DVec2> = learnt.samples.iter().map(|s| s.at).collect();
         super::level::check_crowd(&points, level, None)?;
         let source = Source::new(learnt, bounds_mm, level.radius_mm);
-        super::level::check_source(&source, level)?;
+        super::level::check_source(&source, level, area)?;
         // Beside a pattern of elements alone, strokes are no part of it.
         let fixed = match exemplar.curves.is_empty() {
             true => Graph::default(),
