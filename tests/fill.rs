@@ -331,7 +331,7 @@ fn what_cannot_be_learnt_from() {
     room.refuses(
         "fill one.svg --domain rect:90x60mm --radii 12mm --spacing 8mm -o out.svg",
         2,
-        &["one.svg: the exemplar has 2 sample(s)", "draw more of it"],
+        &["one.svg: the exemplar has 2 sample(s)", "draw more strokes"],
     );
     refuses("dashed.svg", &["<path id=\"d\"> on line 2", "dashed", "Convert to Dashes"]);
     refuses("stretched.svg", &["<path id=\"s\"> on line 2", "stretches", "Stroke to Path"]);
