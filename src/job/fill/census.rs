@@ -222,8 +222,8 @@ mod tests {
             let at = 10.0 * f64::from(i) + 4.5;
             [rectangle(at, -50.0, 1.0, 200.0), rectangle(-50.0, at, 200.0, 1.0)]
         });
-        let dots = (0..10)
-            .flat_map(|i| (0..10).map(move |j| (10.0 * f64::from(i) - 1.0, 10.0 * f64::from(j) - 1.0)));
+        let dots = (0..11)
+            .flat_map(|i| (0..11).map(move |j| (10.0 * f64::from(i) - 1.0, 10.0 * f64::from(j) - 1.0)));
         let paths: Vec<_> = bars.chain(dots.map(|(x, y)| rectangle(x, y, 2.0, 2.0))).collect();
         let ink = Region::fill(grid, &paths, FillRule::NonZero);
         for [x, y, w, h] in [[0.0, 0.0, 100.0, 100.0], [3.0, 1.7, 60.0, 80.0], [10.0, 20.0, 50.0, 50.0]] {
