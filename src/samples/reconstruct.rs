@@ -4,16 +4,16 @@
 //! path that passes through; so every edge is in exactly one path. Unlike the paper's, a path also goes on through a sample with two
 //! edges that are not opposite, as a corner, and an edge is the cubic curve that was voted for with it, made smooth where a path passes.
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::DVec2;
 use kurbo::{BezPath, Point};
 
+use super::assignment::Assignment;
 use super::graph::Adjacency;
+use super::orientations::{matched, turn};
 use super::{Area, Curve, Drawing, Element, Graph, Kind, Options};
 
-/// Directions are matched with edges at samples of at most so many; the work doubles with each. The exemplars' crossings have four to six.
-const MOST_MATCHED: usize = 12;
 /// A loop whose ends are as near as this part of a millimetre is closed; one that leads round a rolled area is not.
 const CLOSES_MM: f64 = 1e-6;
 
@@ -84,24 +84,25 @@ impl<'a> Weave<'a> {
         let has_directions = !options.without.orientation;
         let mut weave = Self { graph, area, has_directions, onward: vec![[None; 2]; graph.edges.len()] };
         let opposite = if has_directions { options.opposite } else { FRAC_PI_2 };
+        let mut problem = Assignment::default();
         for sample in 0..graph.samples.len() {
             let ends: Vec<End> = adjacency
                 .of(sample)
                 .iter()
                 .map(|&(edge, _)| (edge, usize::from(graph.edges[edge].ends[1] == sample)))
                 .collect();
-            weave.pass(sample, &ends, opposite);
+            weave.pass(sample, &ends, opposite, &mut problem);
         }
         weave
     }
 
     /// Pairs the edges that end at a sample: the ones that are most nearly opposite first.
-    fn pass(&mut self, sample: usize, ends: &[End], opposite: f64) {
-        let directions = self.directions(sample, ends);
+    fn pass(&mut self, sample: usize, ends: &[End], opposite: f64, problem: &mut Assignment) {
+        let directions = self.directions(sample, ends, problem);
         let mut pairs = Vec::new();
         for j in 0..ends.len() {
             for i in 0..j {
-                let bend = PI - difference(directions[i], directions[j]);
+                let bend = PI - turn(directions[i], directions[j]);
                 if bend < opposite || ends.len() == 2 {
                     pairs.push((bend, i, j));
                 }
@@ -120,11 +121,11 @@ impl<'a> Weave<'a> {
 
     /// The angle at which the path along each edge leaves a sample: the direction of the sample that is matched with it, its own where
     /// there is none.
-    fn directions(&self, sample: usize, ends: &[End]) -> Vec<f64> {
+    fn directions(&self, sample: usize, ends: &[End], problem: &mut Assignment) -> Vec<f64> {
         let mut own: Vec<f64> = ends.iter().map(|&end| self.leaving(end).to_angle()).collect();
         let given = &self.graph.samples[sample].orientations;
-        if self.has_directions && ends.len().max(given.len()) <= MOST_MATCHED {
-            for (direction, end) in matched(given, &own).into_iter().enumerate() {
+        if self.has_directions {
+            for (direction, end) in matched(given, &own, problem).into_iter().enumerate() {
                 if let Some(end) = end {
                     own[end] = given[direction];
                 }
@@ -235,50 +236,14 @@ fn bent_as(chord: DVec2, other: Option<DVec2>) -> DVec2 {
     if handle.dot(chord) > 0.0 { handle } else { chord / 3.0 }
 }
 
-/// The difference of two angles, from 0 to π.
-fn difference(a: f64, b: f64) -> f64 {
-    let turn = (a - b).rem_euclid(TAU);
-    turn.min(TAU - turn)
-}
-
 pub(super) fn point(p: DVec2) -> Point {
     Point::new(p.x, p.y)
 }
 
-/// For each of the angles `given` the one of `own` that it is matched with, so that the differences add up to the least; as many are
-/// matched as can be.
-fn matched(given: &[f64], own: &[f64]) -> Vec<Option<usize>> {
-    let mut result = vec![None; given.len()];
-    if given.len() > own.len() {
-        for (i, j) in matched(own, given).into_iter().enumerate() {
-            result[j.expect("all of the fewer are matched")] = Some(i);
-        }
-        return result;
-    }
-    // By the set of those of `own` that are matched with the first ones of `given`: the least sum, and the last one matched.
-    let mut least = vec![(f64::INFINITY, 0); 1 << own.len()];
-    least[0].0 = 0.0;
-    for set in 1..least.len() {
-        let Some(&angle) = given.get(set.count_ones() as usize - 1) else { continue };
-        for j in (0..own.len()).filter(|j| set >> j & 1 == 1) {
-            let sum = least[set & !(1 << j)].0 + difference(angle, own[j]);
-            if sum < least[set].0 {
-                least[set] = (sum, j);
-            }
-        }
-    }
-    let full = (0..least.len()).filter(|set| set.count_ones() as usize == given.len());
-    let mut set =
-        full.min_by(|&a, &b| least[a].0.total_cmp(&least[b].0)).expect("there is a set of each size");
-    for slot in result.iter_mut().rev() {
-        *slot = Some(least[set].1);
-        set &= !(1 << least[set].1);
-    }
-    result
-}
-
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use kurbo::PathEl;
     use proptest::prelude::*;
 
@@ -373,33 +338,6 @@ mod tests {
         assert!(!path.elements().contains(&PathEl::ClosePath), "it is drawn open");
         let bounds = kurbo::Shape::bounding_box(path);
         assert!((bounds.width() - 40.0).abs() < 1e-9 && bounds.height() < 1e-9);
-    }
-
-    #[test]
-    fn matching_is_the_best_of_all_permutations() {
-        let mut state = 7u64;
-        let mut angle = || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (state >> 40) as f64 / f64::from(1 << 24) * TAU
-        };
-        fn least(given: &[f64], own: &[f64]) -> f64 {
-            let Some((&first, rest)) = given.split_first() else { return 0.0 };
-            let others = |j: usize| {
-                own.iter().enumerate().filter(|&(i, _)| i != j).map(|(_, &a)| a).collect::<Vec<_>>()
-            };
-            let sums = (0..own.len()).map(|j| difference(first, own[j]) + least(rest, &others(j)));
-            sums.fold(f64::INFINITY, f64::min)
-        }
-        for round in 0..60 {
-            let given: Vec<f64> = (0..round % 4).map(|_| angle()).collect();
-            let own: Vec<f64> = (0..3 + round % 3).map(|_| angle()).collect();
-            let sum = |pairs: Vec<Option<usize>>, from: &[f64], to: &[f64]| {
-                pairs.iter().zip(from).filter_map(|(j, &a)| Some(difference(a, to[(*j)?]))).sum::<f64>()
-            };
-            let best = least(&given, &own);
-            assert!((sum(matched(&given, &own), &given, &own) - best).abs() < 1e-9);
-            assert!((sum(matched(&own, &given), &own, &given) - best).abs() < 1e-9);
-        }
     }
 
     proptest! {
