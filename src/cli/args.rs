@@ -11,11 +11,13 @@ use super::make::MakeArgs;
 use super::picture::PictureArgs;
 use super::preset::PresetArgs;
 use super::print::PrintArgs;
+use super::run::CliError;
 use super::shell::{CompletionsArguments, ManArguments};
 use super::surface::{SURFACE_HELP, SurfaceArguments};
 use super::values;
 use crate::domain::{CurveSpec, RectSize, Roll, Twist};
-use crate::job::{Drape, KeptRange, SlicingChoice, StitchMethod};
+use crate::job::{Drape, FlatMaking, KeptRange, SlicingChoice, StitchMethod};
+use crate::planar::Tolerances;
 
 /// Ornament that can be made: new pattern from one SVG ornament, with exactly the components and holes you ask
 /// for, written as a part and counted again on the file.
@@ -306,6 +308,22 @@ pub(super) struct PartArguments {
     pub(super) picture: PictureArgs,
     #[command(flatten)]
     pub(super) preset: PresetArgs,
+}
+
+impl PartArguments {
+    /// How a part that lies flat is to be made, for these outputs.
+    pub(super) fn making(&self, outputs: &[PathBuf]) -> Result<FlatMaking, CliError> {
+        let made = self.make.made(&self.tolerances)?;
+        Ok(FlatMaking {
+            thickness_mm: made.thickness_mm,
+            tolerances: Tolerances::new(made.chord_mm, made.min_feature_mm, made.min_gap_mm)?,
+            enforce: self.make.enforce,
+            laser: self.laser.options(&made, outputs),
+            material: made.material,
+            print: self.print.options(),
+            picture: self.picture.options(),
+        })
+    }
 }
 
 #[derive(Debug, Clone, Args)]

@@ -7,7 +7,6 @@ use super::laser::say_cuts;
 use super::progress::Progress;
 use super::run::{CliError, output, print_json, refuse_json_beside, say_bridges, say_notes, say_quantities};
 use crate::job::{ExtrudeBridges, ExtrudeReport, FlatMaking, Format, Output, extrude};
-use crate::planar::Tolerances;
 
 pub(super) fn run(arguments: &ExtrudeArguments) -> Result<ExitCode, CliError> {
     let outputs: Vec<Output> =
@@ -28,16 +27,7 @@ pub(super) fn run(arguments: &ExtrudeArguments) -> Result<ExitCode, CliError> {
 
 /// How the drawing is to be made, and its bridges.
 pub(super) fn making(arguments: &ExtrudeArguments) -> Result<(FlatMaking, Option<ExtrudeBridges>), CliError> {
-    let made = arguments.part.make.made(&arguments.part.tolerances)?;
-    let making = FlatMaking {
-        thickness_mm: made.thickness_mm,
-        tolerances: Tolerances::new(made.chord_mm, made.min_feature_mm, made.min_gap_mm)?,
-        enforce: arguments.part.make.enforce,
-        laser: arguments.part.laser.options(&made, &arguments.output),
-        material: made.material,
-        print: arguments.part.print.options(),
-        picture: arguments.part.picture.options(),
-    };
+    let making = arguments.part.making(&arguments.output)?;
     let bridges = arguments.bridge.map(|width_mm| ExtrudeBridges {
         width_mm,
         components: arguments.components.and_then(|count| count.0),

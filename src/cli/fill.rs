@@ -8,15 +8,14 @@ use clap::Args;
 use super::args::PartArguments;
 use super::laser::say_cuts;
 use super::progress::Progress;
-use super::run::{BRIDGES_SHOWN, CliError, output, say_bridges, say_notes, say_quantities};
+use super::run::{BRIDGES_SHOWN, CliError, destinations, say_bridges, say_notes, say_quantities};
 use super::surface::OnModelArguments;
 use super::values;
 use crate::domain::{CurveSpec, FillDomain, Twist};
 use crate::job::{
-    CloneSpec, FillBuilder, FillJob, FillReport, FlatMaking, Format, JobError, Output, SampleBorder,
-    SampleOptions, SampleStart, SampleWithout, SpaceOptions, Target, UnmatchedPrice,
+    CloneSpec, FillBuilder, FillJob, FillReport, JobError, Output, SampleBorder, SampleOptions, SampleStart,
+    SampleWithout, SpaceOptions, UnmatchedPrice,
 };
-use crate::planar::Tolerances;
 
 /// What follows the options in the help of `fill`.
 pub(super) const HELP: &str = "\
@@ -101,7 +100,7 @@ pub(super) struct FillArguments {
     #[arg(long, value_name = "LENGTHS", value_parser = values::lengths, allow_hyphen_values = true)]
     spacing: Option<values::Lengths>,
     /// Searches and assignments at each level
-    #[arg(long, value_name = "N", default_value_t = 7, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = SampleOptions::default().iterations, allow_negative_numbers = true)]
     iterations: usize,
     /// How it begins: patches of the exemplar, each suiting those around it, or noise, single samples
     #[arg(long, value_name = "WAY", value_parser = ["patches", "noise"], default_value = "patches")]
@@ -175,10 +174,10 @@ struct MethodArguments {
     #[arg(long, value_name = "N", default_value_t = SampleOptions::default().search_neighbours, allow_negative_numbers = true)]
     search_neighbours: usize,
     /// Passes of the search in the first iteration of a level, and in those after
-    #[arg(long, value_name = "N,N", value_parser = values::pair::<usize>, default_value = "5,2", allow_hyphen_values = true)]
+    #[arg(long, value_name = "N,N", value_parser = values::pair::<usize>, default_value_t = values::Pair(SampleOptions::default().passes), allow_hyphen_values = true)]
     passes: values::Pair<usize>,
     /// Largest and smallest window of the random search, in parts of the exemplar's longer side
-    #[arg(long, value_name = "PART,PART", value_parser = values::pair::<f64>, default_value = "0.4,0.067", allow_hyphen_values = true)]
+    #[arg(long, value_name = "PART,PART", value_parser = values::pair::<f64>, default_value_t = values::Pair(SampleOptions::default().windows), allow_hyphen_values = true)]
     windows: values::Pair<f64>,
     /// Samples are removed that are believed in less than this, and added that are more (section 4.3.4)
     #[arg(long, value_name = "PART", default_value_t = SampleOptions::default().least_existence, allow_negative_numbers = true)]
@@ -232,12 +231,7 @@ impl MethodArguments {
 }
 
 pub(super) fn run(arguments: &FillArguments) -> Result<ExitCode, CliError> {
-    let outputs: Vec<Output> =
-        arguments.output.iter().map(|path| output(path, Format::Svg)).collect::<Result<_, _>>()?;
-    let report_target = arguments
-        .report
-        .as_ref()
-        .map(|path| if path.as_os_str() == "-" { Target::Stdout } else { Target::File(path.clone()) });
+    let (outputs, report_target) = destinations(&arguments.output, arguments.report.as_ref())?;
     let job = job(arguments)?;
     job.check_outputs(&outputs, report_target.as_ref())?;
     let progress = Progress::new(arguments.quiet, outputs.iter().map(Output::target).chain(&report_target));
@@ -251,16 +245,7 @@ pub(super) fn run(arguments: &FillArguments) -> Result<ExitCode, CliError> {
 }
 
 fn job(a: &FillArguments) -> Result<FillJob, CliError> {
-    let made = a.part.make.made(&a.part.tolerances)?;
-    let making = FlatMaking {
-        thickness_mm: made.thickness_mm,
-        tolerances: Tolerances::new(made.chord_mm, made.min_feature_mm, made.min_gap_mm)?,
-        enforce: a.part.make.enforce,
-        laser: a.part.laser.options(&made, &a.output),
-        material: made.material,
-        print: a.part.print.options(),
-        picture: a.part.picture.options(),
-    };
+    let making = a.part.making(&a.output)?;
     let mut builder = FillBuilder::new(&a.exemplar, a.domain.clone())
         .constants(a.method.constants(a))
         .making(making)

@@ -9,7 +9,8 @@ use crate::domain::{CurveSpec, Roll};
 use crate::job::{BandBuilder, Output, RectBuilder, RectJob, RectReport};
 
 pub(super) fn run_rect(arguments: &RectArguments) -> Result<ExitCode, CliError> {
-    let (outputs, report_target) = destinations(&arguments.pattern)?;
+    let (outputs, report_target) =
+        destinations(&arguments.pattern.output, arguments.pattern.report.as_ref())?;
     let quiet = arguments.pattern.quiet;
     let job = job(arguments, |band| band)?;
     job.check_outputs(&outputs, report_target.as_ref())?;

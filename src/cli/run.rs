@@ -113,7 +113,8 @@ pub(super) fn refuse_json_beside(json: bool, outputs: &[Output]) -> Result<(), J
 }
 
 fn run_band(arguments: &BandArguments) -> Result<ExitCode, CliError> {
-    let (outputs, report_target) = destinations(&arguments.pattern)?;
+    let (outputs, report_target) =
+        destinations(&arguments.pattern.output, arguments.pattern.report.as_ref())?;
     let quiet = arguments.pattern.quiet;
     let job = builder(arguments)?.build()?;
     let wanted = arguments.best.or(arguments.count);
@@ -189,13 +190,13 @@ fn choice(arguments: &BandArguments) -> Result<Choice, JobError> {
 }
 
 /// Where a pattern goes, and its report.
-pub(super) fn destinations(arguments: &PatternArguments) -> Result<(Vec<Output>, Option<Target>), JobError> {
-    let outputs: Vec<Output> =
-        arguments.output.iter().map(|path| output(path, Format::Svg)).collect::<Result<_, _>>()?;
-    let report_target = arguments
-        .report
-        .as_ref()
-        .map(|path| if path.as_os_str() == "-" { Target::Stdout } else { Target::File(path.clone()) });
+pub(super) fn destinations(
+    files: &[PathBuf],
+    report: Option<&PathBuf>,
+) -> Result<(Vec<Output>, Option<Target>), JobError> {
+    let outputs = files.iter().map(|path| output(path, Format::Svg)).collect::<Result<_, _>>()?;
+    let report_target =
+        report.map(|path| if path.as_os_str() == "-" { Target::Stdout } else { Target::File(path.clone()) });
     Ok((outputs, report_target))
 }
 

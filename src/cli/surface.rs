@@ -95,7 +95,8 @@ pub(super) enum Mode {
 }
 
 pub(super) fn run(arguments: &SurfaceArguments) -> Result<ExitCode, CliError> {
-    let (outputs, report_target) = destinations(&arguments.pattern)?;
+    let (outputs, report_target) =
+        destinations(&arguments.pattern.output, arguments.pattern.report.as_ref())?;
     let quiet = arguments.pattern.quiet;
     let job = job(arguments, |band| band)?;
     job.check_outputs(&outputs, report_target.as_ref())?;

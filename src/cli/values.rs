@@ -34,6 +34,13 @@ pub(super) fn lengths(text: &str) -> Result<Lengths, String> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Pair<T>(pub(super) [T; 2]);
 
+impl<T: std::fmt::Display> std::fmt::Display for Pair<T> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let [a, b] = &self.0;
+        write!(f, "{a},{b}")
+    }
+}
+
 /// `5,2`.
 pub(super) fn pair<T: std::str::FromStr>(text: &str) -> Result<Pair<T>, String> {
     let numbers =

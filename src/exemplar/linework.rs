@@ -18,7 +18,6 @@ use std::path::Path;
 
 use glam::DVec2;
 use kurbo::{Affine, BezPath, Cap, PathEl, Rect, Shape as _, Stroke};
-use sha2::{Digest, Sha256};
 
 use super::artwork::{Artwork, Brush, Holder, Item, Shape};
 use super::error::{ExemplarError, ExemplarFault, Place};
@@ -26,7 +25,7 @@ use super::limits::Limits;
 use super::outline::{check_precision, largest_scale, regions};
 use super::scan::{Strictness, scan};
 use super::source::Source;
-use super::{ReadOptions, check_options, read_bytes};
+use super::{ReadOptions, check_options, read_named, sha256};
 use crate::planar::{Grid, Region};
 
 /// A transform is a similarity if it lengthens all ways alike up to this part; the SVG library's coefficients are `f32`. Smaller, and
@@ -61,10 +60,7 @@ impl Linework {
     /// # Errors
     /// [`ExemplarError`] names the file and what is wrong with it: as [`super::Exemplar::read`], and curves that cannot be represented.
     pub fn read(path: &Path, options: &ReadOptions) -> Result<Self, ExemplarError> {
-        let file = path.display().to_string();
-        let bytes = read_bytes(path, &options.limits).map_err(|fault| ExemplarError::new(&file, fault))?;
-        let name = path.file_stem().map_or_else(|| file.clone(), |stem| stem.to_string_lossy().into_owned());
-        Self::parse(&name, &bytes, options).map_err(|fault| ExemplarError::new(file, fault))
+        read_named(path, &options.limits, |name, bytes| Self::parse(name, bytes, options))
     }
 
     /// The curves and elements of the SVG document `bytes`, which errors call `name`.
@@ -84,7 +80,7 @@ impl Linework {
         parts.sort_out(&artwork, options)?;
         let mut linework = Self {
             name: name.to_owned(),
-            sha256: Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect(),
+            sha256: sha256(bytes),
             notes: Vec::new(),
             page_mm: [artwork.page_mm.0, artwork.page_mm.1],
             strokes: Vec::new(),

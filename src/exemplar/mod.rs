@@ -87,10 +87,7 @@ impl Exemplar {
     /// # Errors
     /// [`ExemplarError`] names the file and what is wrong with it.
     pub fn read(path: &Path, options: &ReadOptions) -> Result<Self, ExemplarError> {
-        let file = path.display().to_string();
-        let bytes = read_bytes(path, &options.limits).map_err(|fault| ExemplarError::new(&file, fault))?;
-        let name = path.file_stem().map_or_else(|| file.clone(), |stem| stem.to_string_lossy().into_owned());
-        Self::parse(&name, &bytes, options).map_err(|fault| ExemplarError::new(file, fault))
+        read_named(path, &options.limits, |name, bytes| Self::parse(name, bytes, options))
     }
 
     /// The exemplar in the SVG document `bytes`, which errors call `name`.
@@ -110,7 +107,7 @@ impl Exemplar {
         let region = outline::region(&artwork, 1.0, options.chord_mm, &options.limits)?;
         let natural = Self {
             name: name.to_owned(),
-            sha256: Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect(),
+            sha256: sha256(bytes),
             notes,
             artwork: Arc::new(artwork),
             options: *options,
@@ -249,6 +246,23 @@ fn check_options(options: &ReadOptions) -> Result<(), ExemplarFault> {
         }
         _ => Ok(()),
     }
+}
+
+/// What `parse` makes of a file and of its name, which is its stem; errors name the file.
+fn read_named<T>(
+    path: &Path,
+    limits: &Limits,
+    parse: impl FnOnce(&str, &[u8]) -> Result<T, ExemplarFault>,
+) -> Result<T, ExemplarError> {
+    let file = path.display().to_string();
+    let bytes = read_bytes(path, limits).map_err(|fault| ExemplarError::new(&file, fault))?;
+    let name = path.file_stem().map_or_else(|| file.clone(), |stem| stem.to_string_lossy().into_owned());
+    parse(&name, &bytes).map_err(|fault| ExemplarError::new(file, fault))
+}
+
+/// The SHA-256 of bytes in lower-case hexadecimal.
+fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// The bytes of a file, never more than one beyond the limit.

@@ -6,12 +6,12 @@
 //! intersection: inside of both is where the windings of both, less one, are positive.
 
 use glam::DVec2;
-use kurbo::{Affine, BezPath, ParamCurveArclen, PathEl};
+use kurbo::{Affine, BezPath, ParamCurveArclen};
 
 use super::artwork::{Artwork, Brush, Clip, Item, Shape};
 use super::error::{ExemplarFault, Place};
 use super::limits::Limits;
-use crate::planar::{Contour, FillRule, Grid, GridError, GridPoint, Region, boundaries, stroked};
+use crate::planar::{Contour, FillRule, Grid, GridError, GridPoint, Region, boundaries, chords, stroked};
 
 /// A dash of no length becomes one of this part of the stroke's width, so that its caps have a direction.
 const DOT: f64 = 1e-4;
@@ -193,16 +193,7 @@ impl Flattener<'_> {
 
 /// The vertices of each subpath, within `tolerance_mm`.
 pub(super) fn flat(path: &BezPath, tolerance_mm: f64) -> Vec<Vec<DVec2>> {
-    let mut polygons: Vec<Vec<DVec2>> = Vec::new();
-    kurbo::flatten(path, tolerance_mm, |el| match el {
-        PathEl::MoveTo(p) => polygons.push(vec![DVec2::new(p.x, p.y)]),
-        PathEl::LineTo(p) => {
-            polygons.last_mut().expect("a path begins with a move").push(DVec2::new(p.x, p.y))
-        }
-        PathEl::ClosePath => {}
-        PathEl::QuadTo(..) | PathEl::CurveTo(..) => unreachable!("flattening leaves lines only"),
-    });
-    polygons
+    chords(path, tolerance_mm).into_iter().map(|subpath| subpath.points).collect()
 }
 
 struct Filler {

@@ -66,10 +66,16 @@ impl Default for FlatMaking {
 }
 
 impl FlatMaking {
-    pub(super) fn check(&self, outputs: &[Output]) -> Result<(), JobError> {
+    /// Refuses to enforce widths that are not given.
+    pub(super) fn check_enforced(&self) -> Result<(), JobError> {
         if self.enforce && self.tolerances.min_feature_mm() == 0.0 && self.tolerances.min_gap_mm() == 0.0 {
             return Err(making::no_width());
         }
+        Ok(())
+    }
+
+    pub(super) fn check(&self, outputs: &[Output]) -> Result<(), JobError> {
+        self.check_enforced()?;
         self.laser.check(outputs)?;
         self.picture.check(outputs)?;
         if self.laser.carve {

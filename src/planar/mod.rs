@@ -12,6 +12,7 @@
 
 #[cfg(test)]
 mod boxes;
+mod chords;
 mod contour;
 mod grid;
 mod index;
@@ -27,6 +28,7 @@ mod touch;
 
 #[cfg(test)]
 pub(crate) use boxes::boxes;
+pub use chords::{Chords, chords};
 pub use contour::Contour;
 pub use grid::{Grid, GridError, GridPoint, orient};
 pub use index::{EdgeIndex, IndexedEdge};

@@ -3,9 +3,8 @@
 //! Neighbourhoods at a border are halves, and the last samples of a strand are anywhere near it. Beyond the border neither matters. Excluded: cutting
 //! elements, which are whole or are not there.
 
-use glam::DVec2;
-
 use super::area::Area;
+use super::cubic::{Cubic, halves, point_at};
 use super::elements::Elements;
 use super::graph::{Edge, Graph, Kind, Sample, renumbered};
 use crate::planar::Sets;
@@ -55,7 +54,7 @@ pub fn cut(graph: &mut Graph, elements: &mut Elements, area: &Area, least_mm: f6
         if t <= 0.0 {
             continue;
         }
-        let [_, h1, h2, end] = front(&cubic, t);
+        let ([_, h1, h2, end], _) = halves(&cubic, t);
         let sample = Sample {
             at: area.home(end),
             orientations: vec![(h2 - end).to_angle().rem_euclid(std::f64::consts::TAU)],
@@ -107,8 +106,8 @@ fn drop_scraps(graph: &mut Graph, area: &Area, least_mm: f64) {
 }
 
 /// The last parameter before a cubic leaves the area for the first time; its beginning is inside.
-fn exit(cubic: &[DVec2; 4], area: &Area) -> f64 {
-    let is_inside = |t: f64| area.contains(front(cubic, t)[3]);
+fn exit(cubic: &Cubic, area: &Area) -> f64 {
+    let is_inside = |t: f64| area.contains(point_at(cubic, t));
     let out = (1..=PARTS).map(|i| i as f64 / PARTS as f64).find(|&t| !is_inside(t)).unwrap_or(1.0);
     let (mut low, mut high) = (out - 1.0 / PARTS as f64, out);
     for _ in 0..BISECTIONS {
@@ -118,16 +117,10 @@ fn exit(cubic: &[DVec2; 4], area: &Area) -> f64 {
     low
 }
 
-/// The part of a cubic Bézier curve up to `t` (de Casteljau).
-fn front(cubic: &[DVec2; 4], t: f64) -> [DVec2; 4] {
-    let [a, b, c, d] = *cubic;
-    let (ab, bc, cd) = (a.lerp(b, t), b.lerp(c, t), c.lerp(d, t));
-    let (abc, bcd) = (ab.lerp(bc, t), bc.lerp(cd, t));
-    [a, ab, abc, abc.lerp(bcd, t)]
-}
-
 #[cfg(test)]
 mod tests {
+    use glam::DVec2;
+
     use super::*;
     use crate::samples::area::tests::square;
     use crate::samples::sampling::curve_sample;

@@ -3,10 +3,10 @@
 use std::f64::consts::FRAC_PI_6;
 
 use glam::DVec2;
-use kurbo::PathEl;
 use rstar::{AABB, RTree, RTreeObject};
 
 use super::drawing::Curve;
+use crate::planar::chords;
 
 /// A curve as a chain of chords; the last point of a closed one is its first again.
 #[derive(Debug, Clone)]
@@ -29,21 +29,10 @@ const CORNER: f64 = FRAC_PI_6;
 impl Line {
     /// The chords of a curve, within `chord_mm`; `None` if it has no length.
     pub fn new(curve: &Curve, chord_mm: f64) -> Option<Self> {
-        let mut points: Vec<DVec2> = Vec::new();
-        let mut is_closed = false;
-        kurbo::flatten(&curve.path, chord_mm, |el| match el {
-            PathEl::MoveTo(p) | PathEl::LineTo(p) => {
-                let p = DVec2::new(p.x, p.y);
-                if points.last() != Some(&p) {
-                    points.push(p);
-                }
-            }
-            PathEl::ClosePath => is_closed = true,
-            PathEl::QuadTo(..) | PathEl::CurveTo(..) => unreachable!("flattening leaves lines only"),
-        });
-        if is_closed && points.first() != points.last() {
-            points.push(points[0]);
-        }
+        let subpath = chords(&curve.path, chord_mm).into_iter().next()?;
+        let is_closed = subpath.is_closed;
+        let mut points = subpath.way();
+        points.dedup();
         if points.len() < 2 {
             return None;
         }

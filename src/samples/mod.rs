@@ -13,6 +13,7 @@ mod area;
 mod assignment;
 mod border;
 mod complete;
+mod cubic;
 mod drawing;
 mod draws;
 mod edges;

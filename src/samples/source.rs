@@ -75,10 +75,10 @@ impl Source {
             .collect()
     }
 
-    /// The place that lies `by` from a sample, if it is in the exemplar's box.
-    pub fn side_of(&self, sample: usize, by: DVec2) -> Option<DVec2> {
+    /// The place that lies `by` from a sample, or where the exemplar's box ends on the way.
+    pub fn beside(&self, sample: usize, by: DVec2) -> DVec2 {
         let (low, high) = self.bounds_mm;
-        Some((self.graph.samples[sample].at + by).clamp(low, high))
+        (self.graph.samples[sample].at + by).clamp(low, high)
     }
 
     /// The longer side of its box, in millimetres.

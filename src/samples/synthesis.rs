@@ -173,10 +173,8 @@ impl Run<'_> {
             .iter()
             .zip(&parents)
             .map(|(s, &parent)| {
-                let aim = self
-                    .source
-                    .side_of(output.found[parent]?, self.area.way(coarse.samples[parent].at, s.at));
-                finders.get(&Kind::Curve)?.nearest(aim?)
+                let by = self.area.way(coarse.samples[parent].at, s.at);
+                finders.get(&Kind::Curve)?.nearest(self.source.beside(output.found[parent]?, by))
             })
             .collect();
         for (number, placed) in output.placed.iter().enumerate() {

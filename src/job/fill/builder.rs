@@ -7,7 +7,6 @@ use super::{Fill, SampleOptions};
 use crate::domain::{CurveSpec, FillDomain};
 use crate::job::error::JobError;
 use crate::job::flat::FlatMaking;
-use crate::job::making;
 use crate::job::output::{Output, Target};
 use crate::job::space::SpaceOptions;
 use crate::job::stage::Stage;
@@ -220,14 +219,8 @@ impl FillBuilder {
             }
         }
         self.check_constants()?;
-        let making = &self.making;
-        if making.enforce
-            && making.tolerances.min_feature_mm() == 0.0
-            && making.tolerances.min_gap_mm() == 0.0
-        {
-            return Err(making::no_width());
-        }
-        making.print.profile(making.thickness_mm)?;
+        self.making.check_enforced()?;
+        self.making.print.profile(self.making.thickness_mm)?;
         Ok(FillJob { options: self })
     }
 

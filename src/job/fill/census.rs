@@ -1,13 +1,19 @@
 //! How much of everything there is on an area: components, holes and ends that hang free, beside the exemplar's.
 
+use std::path::Path;
+
 use glam::DVec2;
 use kurbo::PathEl;
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::planar::{EdgeIndex, GridPoint, Part, Region};
-use crate::samples::{Curve, Drawing};
+use super::engine::unlearnt;
+use super::ground::grid_error;
+use crate::exemplar::Linework;
+use crate::job::error::JobError;
+use crate::planar::{Chords, EdgeIndex, FillRule, Grid, GridPoint, Part, Region, chords};
+use crate::samples::{Curve, Drawing, SampleError, inked};
 
 /// A hundred square centimetres.
 pub(super) const AREA_MM2: f64 = 10_000.0;
@@ -128,7 +134,7 @@ fn dangling_ends(drawing: &Drawing) -> Vec<DVec2> {
     let mut stretches = Vec::new();
     for (number, curve) in drawing.curves.iter().enumerate() {
         let mut along_mm = 0.0;
-        for ends in chords(curve).windows(2).map(|pair| [pair[0], pair[1]]) {
+        for ends in line(curve).windows(2).map(|pair| [pair[0], pair[1]]) {
             let to_mm = along_mm + ends[0].distance(ends[1]);
             let of = Some((number, [along_mm, to_mm]));
             stretches.push(Stretch { ends, reach_mm: 0.5 * curve.width_mm, of });
@@ -158,7 +164,7 @@ fn dangling_ends(drawing: &Drawing) -> Vec<DVec2> {
         if matches!(curve.path.elements().last(), None | Some(PathEl::ClosePath)) {
             continue;
         }
-        let points = chords(curve);
+        let points = line(curve);
         let length_mm: f64 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
         let ends = [(points[0], 0.0), (points[points.len() - 1], length_mm)];
         let free = ends.into_iter().filter(|&(at, along_mm)| !is_held(number, curve, at, along_mm));
@@ -167,20 +173,10 @@ fn dangling_ends(drawing: &Drawing) -> Vec<DVec2> {
     dangling
 }
 
-fn chords(curve: &Curve) -> Vec<DVec2> {
-    let mut points = Vec::new();
-    let mut put = |p: kurbo::Point| points.push(DVec2::new(p.x, p.y));
-    let mut start = kurbo::Point::ZERO;
+/// The line of a curve; none if it has no subpath.
+fn line(curve: &Curve) -> Vec<DVec2> {
     let tolerance = (CHORD_PENS * curve.width_mm).max(1e-3);
-    kurbo::flatten(&curve.path, tolerance, |el| match el {
-        PathEl::MoveTo(p) => {
-            start = p;
-            put(p);
-        }
-        PathEl::ClosePath => put(start),
-        el => el.end_point().into_iter().for_each(&mut put),
-    });
-    points
+    chords(&curve.path, tolerance).into_iter().next().map_or_else(Vec::new, Chords::way)
 }
 
 /// How often closed polygons go round a point.
@@ -195,6 +191,44 @@ fn winding(contours: &[Vec<DVec2>], p: DVec2) -> i32 {
         (0..n).map(|i| crosses(contour[i], contour[(i + 1) % n])).sum()
     };
     contours.iter().map(of).sum()
+}
+
+/// Parts of an exemplar's shorter side that are left out all around when it and what was made of it are counted, one after the other, as how a
+/// drawing ends is not what it is like inside. Of several windows the mean is steadier.
+const BORDERS: [f64; 4] = [0.05, 0.1, 0.15, 0.2];
+
+/// How much of everything an exemplar has, away from the border of its page, or of the box around its lines where these are not on the page; and
+/// how long its shorter side is.
+pub(super) fn density_of(
+    file: &Path,
+    exemplar: &Drawing,
+    linework: &Linework,
+    chord_mm: f64,
+) -> Result<(Density, f64), JobError> {
+    let Some((low, high)) = exemplar.bounds_mm() else {
+        return Err(unlearnt(file, SampleError::Empty));
+    };
+    let page = DVec2::from(linework.page_mm());
+    let grid = Grid::for_extent(low.abs().max(high.abs()).max(page).max_element()).map_err(grid_error)?;
+    let ink = inked(exemplar, grid, chord_mm).map_err(grid_error)?;
+    let pen = DVec2::splat(exemplar.curves.iter().map(|curve| curve.width_mm).fold(chord_mm, f64::max));
+    let is_on_page = low.cmpge(-pen).all() && high.cmple(page + pen).all();
+    // A single straight line has a box without area.
+    let (low, high) = if is_on_page { (DVec2::ZERO, page) } else { (low, high.max(low + pen)) };
+    let side_mm = (high - low).min_element();
+    let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
+    let path = corners.iter().map(|&p| grid.snap(p)).collect::<Result<Vec<_>, _>>().map_err(grid_error)?;
+    let window = Region::fill(grid, &[path], FillRule::NonZero);
+    Ok((density_inside(exemplar, &ink.within(&window), &window, side_mm), side_mm))
+}
+
+/// How much of everything there is inside of an area, for an exemplar whose shorter side is `side_mm`: the mean of windows, or on all of the area where none
+/// has room.
+pub(super) fn density_inside(drawing: &Drawing, ink: &Region, area: &Region, side_mm: f64) -> Density {
+    let window = |part: &f64| area.offset(-part * side_mm, part * side_mm / 10.0);
+    let windows: Vec<Region> = BORDERS.iter().map(window).filter(|window| !window.is_empty()).collect();
+    let windows = if windows.is_empty() { vec![area.clone()] } else { windows };
+    Density::mean(windows.iter().map(|window| Density::new(drawing, &ink.within(window), window)).collect())
 }
 
 #[cfg(test)]

@@ -3,13 +3,14 @@
 use std::path::Path;
 
 use glam::DVec2;
-use kurbo::{PathEl, Shape};
+use kurbo::Shape;
 use rustc_hash::FxHashMap;
 
 use super::builder::refused;
 use crate::exemplar::{Limits, Linework, ReadOptions};
 use crate::job::error::JobError;
 use crate::job::flat::READ_SHARE;
+use crate::planar::{Chords, chords};
 use crate::samples::{Curve, Drawing, Element};
 
 /// Strokes that run beside each other nearer than this part of the narrower pen lie upon each other.
@@ -114,25 +115,16 @@ fn upon_each_other(curves: &[Curve]) -> Option<(usize, usize, DVec2)> {
 
 /// Points along a curve, so far apart.
 fn dotted(curve: &Curve, step_mm: f64) -> Vec<DVec2> {
-    let mut dots: Vec<DVec2> = Vec::new();
-    let mut start = kurbo::Point::ZERO;
-    kurbo::flatten(&curve.path, 0.1 * step_mm, |el| {
-        let to = match el {
-            PathEl::MoveTo(p) => {
-                start = p;
-                dots.push(DVec2::new(p.x, p.y));
-                return;
-            }
-            PathEl::ClosePath => start,
-            el => el.end_point().unwrap_or(start),
-        };
-        let (from, to) = (dots[dots.len() - 1], DVec2::new(to.x, to.y));
+    let line = chords(&curve.path, 0.1 * step_mm).into_iter().next().map_or_else(Vec::new, Chords::way);
+    let mut dots: Vec<DVec2> = line.first().copied().into_iter().collect();
+    for &to in line.iter().skip(1) {
+        let from = dots[dots.len() - 1];
         let steps = (from.distance(to) / step_mm).floor() as usize;
         dots.extend((1..=steps).map(|i| from + (to - from).normalize_or_zero() * step_mm * i as f64));
         if steps == 0 && from.distance(to) > 0.5 * step_mm {
             dots.push(to);
         }
-    });
+    }
     dots
 }
 

@@ -5,7 +5,7 @@
 //! border, so that its ink ends there. A strip for a curve in space stays flat on its page ([`super::sheet`]).
 
 use glam::DVec2;
-use kurbo::{Affine, BezPath, PathEl, Point};
+use kurbo::{Affine, BezPath, Point};
 
 use super::FillJob;
 use super::builder::refused;
@@ -16,7 +16,7 @@ use crate::job::band::read_curve;
 use crate::job::error::JobError;
 use crate::job::part::MARGIN_MM;
 use crate::job::report::InputReport;
-use crate::planar::{FillRule, Grid, GridError, GridPoint, Region};
+use crate::planar::{Chords, FillRule, Grid, GridError, GridPoint, Region, chords};
 use crate::samples::{self, Area, Curve, Drawing, Element};
 
 /// The part of the chord error for each: flattening curves before they are mapped, and mapping them.
@@ -232,11 +232,8 @@ impl Ground {
         };
         let chord_mm = MAP_SHARE * chord_mm;
         let curve = |curve: &Curve| {
-            let is_closed = matches!(curve.path.elements().last(), Some(PathEl::ClosePath));
-            let mut points = Vec::new();
-            kurbo::flatten(&curve.path, chord_mm, |el| {
-                points.extend(el.end_point().map(|p| DVec2::new(p.x, p.y)))
-            });
+            let Chords { points, is_closed } =
+                chords(&curve.path, chord_mm).into_iter().next().unwrap_or_default();
             let points = map.map_line(&points, chord_mm);
             let mut path = BezPath::new();
             for (i, p) in points.iter().map(|&p| p + *shift_mm).enumerate() {

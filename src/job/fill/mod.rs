@@ -18,11 +18,10 @@ pub use clone::CloneSpec;
 pub use engine::ChangeReport;
 pub use report::FillReport;
 
-use std::path::Path;
-
 use glam::DVec2;
 
 use self::builder::refused;
+use self::census::{density_inside, density_of};
 use self::engine::Pattern;
 use self::ground::{Ground, grid_error, moved};
 use self::sheet::Sheet;
@@ -35,10 +34,9 @@ use super::part::Part;
 use super::report::{FlatPattern, InputReport};
 use super::stage::{Clock, Stage};
 use super::surface::SurfaceOptions;
-use crate::exemplar::Linework;
 use crate::fabricate::Counts;
-use crate::planar::{FillRule, Grid, Region};
-use crate::samples::{self, Drawing, Given, SampleError};
+use crate::planar::Region;
+use crate::samples::{self, Drawing, Given};
 use crate::topology::Wanted;
 
 pub use crate::samples::{
@@ -370,41 +368,3 @@ fn laid(
 
 /// What outlines that cross lose by rounding, at the most.
 const ROUNDING_MM2: f64 = 1e-4;
-
-/// Parts of an exemplar's shorter side that are left out all around when it and what was made of it are counted, one after the other, as how a
-/// drawing ends is not what it is like inside. Of several windows the mean is steadier.
-const BORDERS: [f64; 4] = [0.05, 0.1, 0.15, 0.2];
-
-/// How much of everything an exemplar has, away from the border of its page, or of the box around its lines where these are not on the page; and
-/// how long its shorter side is.
-fn density_of(
-    file: &Path,
-    exemplar: &Drawing,
-    linework: &Linework,
-    chord_mm: f64,
-) -> Result<(Density, f64), JobError> {
-    let Some((low, high)) = exemplar.bounds_mm() else {
-        return Err(engine::unlearnt(file, SampleError::Empty));
-    };
-    let page = DVec2::from(linework.page_mm());
-    let grid = Grid::for_extent(low.abs().max(high.abs()).max(page).max_element()).map_err(grid_error)?;
-    let ink = samples::inked(exemplar, grid, chord_mm).map_err(grid_error)?;
-    let pen = DVec2::splat(exemplar.curves.iter().map(|curve| curve.width_mm).fold(chord_mm, f64::max));
-    let is_on_page = low.cmpge(-pen).all() && high.cmple(page + pen).all();
-    // A single straight line has a box without area.
-    let (low, high) = if is_on_page { (DVec2::ZERO, page) } else { (low, high.max(low + pen)) };
-    let side_mm = (high - low).min_element();
-    let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
-    let path = corners.iter().map(|&p| grid.snap(p)).collect::<Result<Vec<_>, _>>().map_err(grid_error)?;
-    let window = Region::fill(grid, &[path], FillRule::NonZero);
-    Ok((density_inside(exemplar, &ink.within(&window), &window, side_mm), side_mm))
-}
-
-/// How much of everything there is inside of an area, for an exemplar whose shorter side is `side_mm`: the mean of windows, or on all of the area where none
-/// has room.
-fn density_inside(drawing: &Drawing, ink: &Region, area: &Region, side_mm: f64) -> Density {
-    let window = |part: &f64| area.offset(-part * side_mm, part * side_mm / 10.0);
-    let windows: Vec<Region> = BORDERS.iter().map(window).filter(|window| !window.is_empty()).collect();
-    let windows = if windows.is_empty() { vec![area.clone()] } else { windows };
-    Density::mean(windows.iter().map(|window| Density::new(drawing, &ink.within(window), window)).collect())
-}

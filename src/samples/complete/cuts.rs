@@ -8,8 +8,8 @@ use super::lines::Owner;
 use super::links::Planner;
 use super::scene::Scene;
 use super::step::Step;
-use super::work::point_at;
 use crate::planar::Sets;
+use crate::samples::cubic::point_at;
 
 /// A strand of at most so many spacings is taken away as a whole; a longer one is cut.
 const WHOLE_SPACINGS: f64 = 2.5;

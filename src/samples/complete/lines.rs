@@ -4,8 +4,9 @@ use glam::DVec2;
 use kurbo::PathEl;
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
 
-use super::work::{Cubic, Work, point_at};
+use super::work::Work;
 use crate::samples::Element;
+use crate::samples::cubic::{Cubic, point_at};
 
 /// Chords of an edge.
 const CHORDS: u32 = 8;

@@ -9,8 +9,9 @@ use super::ChangeKind;
 use super::lines::{Line, Lines, Owner, Run};
 use super::scene::Scene;
 use super::step::{Link, Port, Step};
-use super::work::{Foot, point_at};
+use super::work::Foot;
 use crate::planar::Sets;
+use crate::samples::cubic::point_at;
 use crate::samples::{Edge, Kind};
 
 /// A component of less ink than this many squares of the pen may be taken away where that is less than joining it.

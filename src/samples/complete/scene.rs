@@ -2,8 +2,9 @@
 
 use super::lines::{Lines, Owner};
 use super::places::Places;
-use super::work::{Foot, Work, point_at};
+use super::work::{Foot, Work};
 use crate::planar::{GridError, Region};
+use crate::samples::cubic::point_at;
 use crate::samples::{Kind, Reconstruction};
 
 /// Edges as far as so many samples from the foot of a link are of the ink that it hangs on to: they are near it because the link is.

@@ -6,6 +6,7 @@ use super::lines::Owner;
 use super::scene::Scene;
 use super::work::{Foot, Work};
 use super::{Change, ChangeKind};
+use crate::samples::cubic::point_at;
 
 /// What is done to the graph.
 #[derive(Debug, Clone, PartialEq)]
@@ -135,7 +136,7 @@ impl Link {
         let steps = (a.distance(b) / step_mm).ceil().max(2.0) as u32;
         // The feet are ink already.
         (1..steps).all(|i| {
-            let p = super::work::point_at(&self.cubic, f64::from(i) / f64::from(steps));
+            let p = point_at(&self.cubic, f64::from(i) / f64::from(steps));
             scene.work.area.contains(p)
         })
     }

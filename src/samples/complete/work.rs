@@ -7,6 +7,7 @@ use glam::DVec2;
 use super::CompleteOptions;
 use super::frame::frame;
 use crate::planar::{GridError, Region};
+use crate::samples::cubic::{Cubic, halves, point_at};
 use crate::samples::ink::CountingPlane;
 use crate::samples::{
     Area, Curve, Drawing, Edge, Element, Graph, Kind, Options, Reconstruction, Sample, Without, reconstruct,
@@ -25,22 +26,6 @@ pub(super) enum Foot {
 
 /// Where there are only elements, the pen is their size divided by this.
 const PENS_PER_ELEMENT: f64 = 6.0;
-
-/// A cubic Bézier curve by its control points, in millimetres.
-pub(super) type Cubic = [DVec2; 4];
-
-/// The point of a cubic at a parameter from 0 to 1.
-pub(super) fn point_at(cubic: &Cubic, t: f64) -> DVec2 {
-    halves(cubic, t).0[3]
-}
-
-/// The two parts of a cubic before and after a parameter.
-fn halves(&[p, q, r, s]: &Cubic, t: f64) -> (Cubic, Cubic) {
-    let [a, b, c] = [p.lerp(q, t), q.lerp(r, t), r.lerp(s, t)];
-    let [d, e] = [a.lerp(b, t), b.lerp(c, t)];
-    let m = d.lerp(e, t);
-    ([p, a, d, m], [m, e, c, s])
-}
 
 /// The pattern and what it is drawn in.
 #[derive(Clone)]
