@@ -1,4 +1,5 @@
-//! Holes that are too small to be holes: where strokes cross at a small angle, or almost meet.
+//! Holes that are too small to be holes: where strokes cross at a small angle, or almost meet; and slits along the frame, where the border
+//! cuts off a stroke that runs beside it.
 
 use glam::DVec2;
 
@@ -11,13 +12,16 @@ use crate::planar::Contour;
 /// A hole with less area than a square of this many chords is an accident of drawing.
 const LEAST_CHORDS: f64 = 8.0;
 
-/// Dabs of the pen that fill holes with less area than the square of the least gap.
+/// A hole at the frame is a slit if it is narrower than this part of the pen: with less, hairs of light stay there; with more, corners fill.
+const SLIT_PENS: f64 = 0.5;
+
+/// Dabs of the pen that fill holes with less area than the square of the least gap, and slits along the frame.
 pub(super) fn filled(scene: &Scene) -> Vec<Step> {
     let work = &scene.work;
     let grid = scene.region.grid();
     let least_mm = work.completing.min_gap_mm.max(LEAST_CHORDS * work.completing.chord_mm);
     let holes = scene.region.parts().iter().flat_map(|part| part.holes());
-    let small = holes.filter(|hole| hole.area_mm2(grid).abs() < least_mm * least_mm);
+    let small = holes.filter(|hole| hole.area_mm2(grid).abs() < least_mm * least_mm || is_slit(scene, hole));
     let dab = |hole: &Contour| {
         let points: Vec<DVec2> = hole.points().iter().map(|&p| grid.to_mm(p)).collect();
         let far =
@@ -33,4 +37,17 @@ pub(super) fn filled(scene: &Scene) -> Vec<Step> {
         Some(Step::add(ChangeKind::Fill, &Link::smooth(scene, &from, &to), None))
     };
     small.filter_map(dab).collect()
+}
+
+/// Whether a hole lies along the frame and is narrower, in the mean, than a part of the pen.
+fn is_slit(scene: &Scene, hole: &Contour) -> bool {
+    let work = &scene.work;
+    let Some(frame_mm) = work.completing.frame_mm else { return false };
+    let grid = scene.region.grid();
+    let points: Vec<DVec2> = hole.points().iter().map(|&p| grid.to_mm(p)).collect();
+    let around_mm: f64 = points.iter().zip(points.iter().cycle().skip(1)).map(|(a, b)| a.distance(*b)).sum();
+    let mean_mm = 2.0 * hole.area_mm2(grid).abs() / around_mm;
+    let at_frame_mm = 0.5 * frame_mm + 4.0 * work.completing.chord_mm;
+    mean_mm < SLIT_PENS * work.pen_mm
+        && points.iter().any(|&p| work.area.depth_mm(work.plane.back(p)) < at_frame_mm)
 }
