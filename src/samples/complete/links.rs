@@ -8,7 +8,7 @@ use kurbo::{ParamCurve, ParamCurveArclen};
 use super::ChangeKind;
 use super::lines::{Line, Lines, Owner, Run};
 use super::scene::Scene;
-use super::step::{Link, Port, Step};
+use super::step::{Link, Port, SMOOTH, Step};
 use super::work::Foot;
 use crate::planar::Sets;
 use crate::samples::cubic::point_at;
@@ -23,8 +23,12 @@ const FAR_HOPS: usize = 6;
 const NEAR_HOPS: usize = 2;
 /// Candidates within a component from one place.
 const PER_PORT: usize = 3;
-/// A link that ends at an edge ends at its sample if that is nearer than this many pens.
+/// A link that ends at an edge ends at its sample if that is nearer than this many pens: with less, a sliver stays between it and an end or
+/// what else leaves there. Where a path only passes there is neither, and the link would be askew for it.
 const SNAP_PENS: f64 = 1.5;
+const PASSING_SNAP_PENS: f64 = 0.3;
+/// How often the ends of a link move to where the other one is nearest.
+const MOVES: usize = 3;
 /// How often the reach is doubled, from three spacings on.
 const DOUBLINGS: u32 = 8;
 
@@ -46,14 +50,13 @@ impl Planner<'_, '_> {
         let mut lines = Lines::new(&scene.work);
         let mut sets = Sets::new(scene.region.components());
         let mut steps = Vec::new();
-        // Edges that go on from ends as these point, then those that turn.
+        // An end that would have to turn away makes a hook, and is better left to a bridge.
         let goes_on = |edge: &&Edge| {
             let [from, to] = edge.ends.map(|end| scene.port(end));
             let way = scene.work.area.way(from.at, to.at);
-            from.points_along(way) && to.points_along(-way)
+            from.points_along(way, SMOOTH) && to.points_along(-way, SMOOTH)
         };
-        let (straight, turning): (Vec<&Edge>, Vec<&Edge>) = self.voted().partition(goes_on);
-        for edge in straight.into_iter().chain(turning) {
+        for edge in self.voted().filter(goes_on) {
             if steps.len() == needed {
                 return steps;
             }
@@ -207,17 +210,50 @@ impl Planner<'_, '_> {
                 }
                 seen.push(other);
                 let link = Link::smooth(self.scene, &port, &self.landing(line, port.at));
-                found.entry([part.min(other), part.max(other)]).or_default().push((link.cost(), link));
+                found
+                    .entry([part.min(other), part.max(other)])
+                    .or_default()
+                    .push((link.cost(self.scene), link));
             }
         }
         let mut links: Vec<(f64, [usize; 2], Link)> = Vec::new();
         for (pair, mut candidates) in found {
             candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
             candidates.truncate(PER_PAIR);
-            links.extend(candidates.into_iter().map(|(cost, link)| (cost, pair, link)));
+            let settled = candidates.into_iter().map(|(cost, link)| self.settled(cost, link));
+            links.extend(settled.map(|(cost, link)| (cost, pair, link)));
         }
         links.sort_by(|a, b| a.0.total_cmp(&b.0));
         links.into_iter().map(|(_, pair, link)| (pair, link)).collect()
+    }
+
+    /// A link with its cost, after its ends on the sides of ink have moved to where it is shortest, if it is cheaper there.
+    fn settled(&self, cost: f64, link: Link) -> (f64, Link) {
+        let mut best = (cost, link);
+        let (mut from, mut to) = (best.1.from.clone(), best.1.to.clone());
+        for _ in 0..MOVES {
+            from = self.moved(from, to.at);
+            to = self.moved(to, from.at);
+            let link = Link::smooth(self.scene, &from, &to);
+            let cost = link.cost(self.scene);
+            if cost < best.0 {
+                best = (cost, link);
+            }
+        }
+        best
+    }
+
+    /// Where the ink of a port is nearest to `p`; ends in the open stay where they are.
+    fn moved(&self, port: Port, p: DVec2) -> Port {
+        if port.onward.is_some() {
+            return port;
+        }
+        let own = self.scene.own(port.foot, port.owner);
+        let p = port.at + self.scene.work.area.way(port.at, p);
+        let near = self.scene.lines.near(p, port.at.distance(p));
+        near.into_iter()
+            .find(|(_, line)| own.contains(&line.owner))
+            .map_or(port, |(_, line)| self.landing(line, p))
     }
 
     /// Links that would enclose a hole with more than `hops` edges around it, the cheapest first.
@@ -238,7 +274,7 @@ impl Planner<'_, '_> {
                 if seen.len() < PER_PORT && !seen.contains(&line.owner) {
                     seen.push(line.owner);
                     let link = Link::smooth(self.scene, &port, &self.landing(line, port.at));
-                    links.push((link.cost(), link));
+                    links.push((link.cost(self.scene), link));
                 }
             }
         }
@@ -313,7 +349,9 @@ impl Planner<'_, '_> {
                 let ends = work.edges[edge].ends;
                 let off = |end: usize| work.area.way(at, work.samples[end].at).length();
                 let near = if off(ends[0]) <= off(ends[1]) { ends[0] } else { ends[1] };
-                if off(near) < SNAP_PENS * work.pen_mm {
+                let passes = self.scene.by_sample[near].len() == 2;
+                let snap_pens = if passes { PASSING_SNAP_PENS } else { SNAP_PENS };
+                if off(near) < snap_pens * work.pen_mm {
                     return self.scene.port(near);
                 }
                 // Not so near to an end that a part of no length would be left.

@@ -81,9 +81,9 @@ pub(super) struct Port {
 }
 
 impl Port {
-    /// Whether a path that ends there goes on along `way`, within 45 degrees; elsewhere any way is as good.
-    pub fn points_along(&self, way: DVec2) -> bool {
-        self.onward.is_none_or(|onward| onward.dot(way) > std::f64::consts::FRAC_1_SQRT_2 * way.length())
+    /// Whether a path that ends there goes on along `way`, turning by an angle with at least this cosine; elsewhere any way is as good.
+    pub fn points_along(&self, way: DVec2, least_cosine: f64) -> bool {
+        self.onward.is_none_or(|onward| onward.dot(way) > least_cosine * way.length())
     }
 }
 
@@ -95,8 +95,14 @@ pub(super) struct Link {
     pub cubic: [DVec2; 4],
 }
 
-/// A path goes on smoothly into a stroke that turns from it by less than this: the cosine of 60 degrees.
-const SMOOTH: f64 = 0.5;
+/// A path goes on smoothly into a stroke that turns from it by less than this: the cosine of 60 degrees. With less, an end that turns makes
+/// a corner in the open; with more, a hook.
+pub(super) const SMOOTH: f64 = 0.5;
+/// What the turn of an end counts: one by 60 degrees as much as a stroke between two lines side by side, which turns nothing.
+const TURN: f64 = 1.5;
+/// What a stroke counts at a place that is no end, and at one where paths meet already: there it would look like one of them that goes on.
+const SIDE: f64 = 1.5;
+const JUNCTION: f64 = 2.0;
 
 impl Link {
     /// A stroke that continues the paths that end at its feet, if it need not turn too much.
@@ -120,11 +126,12 @@ impl Link {
     }
 
     /// Its length, counted more where it is not how a maker would go on: from and to ends in the open, straight ahead.
-    pub fn cost(&self) -> f64 {
+    pub fn cost(&self, scene: &Scene) -> f64 {
         let [a, _, _, b] = self.cubic;
-        let factor = |port: &Port, way: DVec2| match port.onward {
-            Some(onward) => 1.0 + 0.75 * (1.0 - onward.dot(way.normalize_or_zero())),
-            None => 1.5,
+        let factor = |port: &Port, way: DVec2| match (port.onward, port.foot) {
+            (Some(onward), _) => 1.0 + TURN * (1.0 - onward.dot(way.normalize_or_zero())),
+            (None, Foot::Sample(sample)) if scene.by_sample[sample].len() > 2 => JUNCTION,
+            (None, _) => SIDE,
         };
         a.distance(b) * factor(&self.from, b - a) * factor(&self.to, a - b)
     }

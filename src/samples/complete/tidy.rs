@@ -5,6 +5,8 @@ use super::lines::{Lines, Run};
 use super::scene::Scene;
 use super::step::{Link, Port, Step};
 
+/// Ends are joined that turn by less than this: the cosine of 35 degrees. With less, ends bend towards each other in hooks.
+const AHEAD: f64 = 0.82;
 /// A twig is shorter than so many pens.
 const TWIG_PENS: f64 = 1.2;
 
@@ -95,7 +97,7 @@ impl Tidy<'_, '_> {
                 let has_other = edge.ends.iter().all(|&end| !scene.by_sample[end].is_empty());
                 let way = scene.work.area.way(from.at, to.at);
                 // An end that would have to turn back makes a hook.
-                let goes_on = from.points_along(way) && to.points_along(-way);
+                let goes_on = from.points_along(way, AHEAD) && to.points_along(-way, AHEAD);
                 if has_other && goes_on {
                     self.link(
                         ChangeKind::Join,
@@ -121,7 +123,7 @@ impl Tidy<'_, '_> {
                     continue;
                 }
                 let (from, to) = (scene.port(a), scene.port(b));
-                if from.points_along(way) && to.points_along(-way) {
+                if from.points_along(way, AHEAD) && to.points_along(-way, AHEAD) {
                     pairs.push((way.length(), [b, a], Link::smooth(scene, &to, &from)));
                 }
             }
