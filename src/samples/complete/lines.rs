@@ -171,6 +171,17 @@ impl Lines {
         found
     }
 
+    /// All lines, by how far their middles are from `p`, nearest first.
+    pub fn nearest_first(&self, p: DVec2) -> impl Iterator<Item = (f64, &Line)> {
+        self.tree.nearest_neighbor_iter(p.to_array()).map(move |line| (line.nearest(p).0.distance(p), line))
+    }
+
+    /// Only the lines of some owners.
+    pub fn only(&self, is_wanted: impl Fn(Owner) -> bool) -> Self {
+        let lines = self.tree.iter().filter(|line| is_wanted(line.owner)).copied().collect();
+        Self { tree: RTree::bulk_load(lines), ..*self }
+    }
+
     /// How a stroke along `cubic` would lie that may touch only what `is_own`, and keeps `margin_mm` from what it does not touch.
     pub fn run(&self, cubic: &Cubic, half_mm: f64, margin_mm: f64, is_own: impl Fn(Owner) -> bool) -> Run {
         let length = cubic.windows(2).map(|w| w[0].distance(w[1])).sum::<f64>();

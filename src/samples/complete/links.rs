@@ -21,6 +21,8 @@ const PER_PAIR: usize = 6;
 /// A stroke that closes a hole has at least so many edges between its ends, or where there is no such, so many.
 const FAR_HOPS: usize = 6;
 const NEAR_HOPS: usize = 2;
+/// Components that a place is linked to at first; with each doubling of the reach to twice as many.
+const PER_PLACE: usize = 4;
 /// Candidates within a component from one place.
 const PER_PORT: usize = 3;
 /// A link that ends at an edge ends at its sample if that is nearer than this many pens: with less, a sliver stays between it and an end or
@@ -79,8 +81,8 @@ impl Planner<'_, '_> {
             }
         }
         let mut reach_mm = 3.0 * scene.spacing_mm;
-        for _ in 0..=DOUBLINGS {
-            for ([p, q], link) in self.between_parts(reach_mm, &mut sets) {
+        for doubling in 0..=DOUBLINGS {
+            for ([p, q], link) in self.between_parts(reach_mm, PER_PLACE << doubling, &mut sets) {
                 if steps.len() == needed {
                     return steps;
                 }
@@ -193,20 +195,29 @@ impl Planner<'_, '_> {
         (!(self.is_banned)(&step)).then_some(step)
     }
 
-    /// Links between parts that are not in one set yet, the cheapest first.
-    fn between_parts(&self, reach_mm: f64, sets: &mut Sets) -> Vec<([usize; 2], Link)> {
+    /// Links between parts that are not in one set yet, from each place to the nearest `most` parts, the cheapest first.
+    fn between_parts(&self, reach_mm: f64, most: usize, sets: &mut Sets) -> Vec<([usize; 2], Link)> {
         let mut found: BTreeMap<[usize; 2], Vec<(f64, Link)>> = BTreeMap::new();
         let largest = self.largest_set(sets);
+        let set_of: Vec<usize> = (0..self.scene.region.components()).map(|part| sets.find(part)).collect();
+        // From within the largest set nearly all that is near is its own.
+        let outside =
+            self.scene.lines.only(|owner| self.scene.part(owner).is_some_and(|part| set_of[part] != largest));
         for (part, port) in self.ports() {
-            if sets.find(part) == largest && port.onward.is_none() {
+            let is_in_largest = set_of[part] == largest;
+            if is_in_largest && port.onward.is_none() {
                 // Links to the largest are found from the others.
                 continue;
             }
+            let lines = if is_in_largest { &outside } else { &self.scene.lines };
             let mut seen: Vec<usize> = Vec::new();
-            for (_, line) in self.scene.lines.near(port.at, reach_mm) {
+            for (_, line) in lines.nearest_first(port.at).take_while(|&(way_mm, _)| way_mm <= reach_mm) {
                 let Some(other) = self.scene.part(line.owner) else { continue };
-                if sets.find(other) == sets.find(part) || seen.contains(&other) {
+                if set_of[other] == set_of[part] || seen.contains(&other) {
                     continue;
+                }
+                if seen.len() == most {
+                    break;
                 }
                 seen.push(other);
                 let link = Link::smooth(self.scene, &port, &self.landing(line, port.at));
@@ -261,9 +272,8 @@ impl Planner<'_, '_> {
         let mut links: Vec<(f64, Link)> = Vec::new();
         for (part, port) in self.ports() {
             let own = self.scene.own_within(port.foot, port.owner, hops);
-            let near = self.scene.lines.near(port.at, reach_mm);
+            let near = self.scene.lines.nearest_first(port.at).take_while(|&(way_mm, _)| way_mm <= reach_mm);
             let others = near
-                .into_iter()
                 .filter(|(_, line)| self.scene.part(line.owner) == Some(part) && !own.contains(&line.owner));
             let ahead = others.filter(|(_, line)| {
                 let way = line.nearest(port.at).0 - port.at;
@@ -271,7 +281,10 @@ impl Planner<'_, '_> {
             });
             let mut seen: Vec<Owner> = Vec::new();
             for (_, line) in ahead {
-                if seen.len() < PER_PORT && !seen.contains(&line.owner) {
+                if seen.len() == PER_PORT {
+                    break;
+                }
+                if !seen.contains(&line.owner) {
                     seen.push(line.owner);
                     let link = Link::smooth(self.scene, &port, &self.landing(line, port.at));
                     links.push((link.cost(self.scene), link));

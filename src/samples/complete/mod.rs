@@ -59,7 +59,7 @@ pub struct CompleteOptions {
     pub least_confidence: f64,
     /// Components are joined, and holes closed, along edges of at least this confidence first: 0.1. With less, a short bridge is as likely.
     pub least_vote: f64,
-    /// Ends nearer than this that point at each other are joined; `None` for 0.6 of the spacing.
+    /// Ends nearer than this that point at each other are joined; `None` for twice the spacing.
     pub reach_mm: Option<f64>,
     /// How many ends there should be in the open, as in the exemplar: no more are joined or trimmed when there are no more than that.
     pub ends_wanted: Option<usize>,

@@ -1,5 +1,7 @@
 //! What a maker would do before counting anything: ends that almost meet are joined, and stray twigs go.
 
+use std::collections::BTreeSet;
+
 use super::ChangeKind;
 use super::lines::{Lines, Run};
 use super::scene::Scene;
@@ -9,6 +11,9 @@ use super::step::{Link, Port, Step};
 const AHEAD: f64 = 0.82;
 /// A twig is shorter than so many pens.
 const TWIG_PENS: f64 = 1.2;
+/// Ends that point at each other are joined across this many spacings while there are too many of them. With less, the gaps that the exemplar
+/// itself has are never closed, and where the output has more of them they stay.
+const REACH_SPACINGS: f64 = 2.0;
 
 /// What is done to a scene before its components and holes are counted. Ends are joined and twigs taken away until there are only
 /// `ends_wanted` ends in the open, as in the exemplar.
@@ -18,8 +23,10 @@ pub(super) fn tidied(scene: &Scene) -> Vec<Step> {
         scene,
         lines: Lines::new(&scene.work),
         open: scene.free_ends().into_iter().map(|(sample, _)| sample).collect(),
+        inside: 0,
         steps: Vec::new(),
     };
+    tidy.inside = tidy.open.iter().filter(|&&end| tidy.is_inside(end)).count();
     if completing.frame_mm.is_some() {
         tidy.join_frame();
     }
@@ -38,13 +45,26 @@ struct Tidy<'s, 'a> {
     /// With what has been added.
     lines: Lines,
     /// Samples at which paths end in the open.
-    open: Vec<usize>,
+    open: BTreeSet<usize>,
+    /// How many of them dangle: at the border the exemplar's ends are cut as well, and do not count.
+    inside: usize,
     steps: Vec<Step>,
 }
 
 impl Tidy<'_, '_> {
     fn is_enough(&self) -> bool {
-        self.open.len() <= self.scene.work.completing.ends_wanted.unwrap_or(0)
+        self.inside <= self.scene.work.completing.ends_wanted.unwrap_or(0)
+    }
+
+    fn is_inside(&self, end: usize) -> bool {
+        let work = &self.scene.work;
+        work.area.depth_mm(work.samples[end].at) > work.pen_mm
+    }
+
+    fn close(&mut self, ends: &[usize]) {
+        for &end in ends {
+            self.inside -= usize::from(self.open.remove(&end) && self.is_inside(end));
+        }
     }
 
     /// Adds a link if it runs clear, and closes its ends.
@@ -57,7 +77,7 @@ impl Tidy<'_, '_> {
                 self.lines.run(&link.cubic, pen_mm / 2.0, scene.margin_mm(), |owner| own.contains(&owner));
             if run != Run::Blocked && link.is_inside(scene) {
                 self.lines.add(&link.cubic, pen_mm / 2.0, usize::MAX);
-                self.open.retain(|end| !ends.contains(end));
+                self.close(ends);
                 self.steps.push(Step::add(kind, &link, confidence));
                 return;
             }
@@ -113,10 +133,11 @@ impl Tidy<'_, '_> {
     /// Pairs of ends that point at each other and are near, the nearest first.
     fn join_pointing(&mut self) {
         let scene = self.scene;
-        let reach_mm = scene.work.completing.reach_mm.unwrap_or(0.6 * scene.spacing_mm);
+        let reach_mm = scene.work.completing.reach_mm.unwrap_or(REACH_SPACINGS * scene.spacing_mm);
         let mut pairs = Vec::new();
-        for (i, &a) in self.open.iter().enumerate() {
-            for &b in &self.open[..i] {
+        let open: Vec<usize> = self.open.iter().copied().collect();
+        for (i, &a) in open.iter().enumerate() {
+            for &b in &open[..i] {
                 let [p, q] = [a, b].map(|end| scene.work.samples[end].at);
                 let way = scene.work.area.way(p, q);
                 if way.length() >= reach_mm {
@@ -146,7 +167,7 @@ impl Tidy<'_, '_> {
             let is_twig =
                 work.length_mm(edge) < TWIG_PENS * work.width_mm(edge) && scene.by_sample[foot].len() > 2;
             if is_twig && !work.is_given(edge) && !self.is_enough() {
-                self.open.retain(|&open| open != end);
+                self.close(&[end]);
                 self.steps.push(Step::remove(ChangeKind::Trim, vec![edge], work));
             }
         }
