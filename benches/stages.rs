@@ -200,6 +200,7 @@ fn bridge_to_one_component_and_so_many_holes(bencher: Bencher, holes: usize) {
         min_gap_mm: 0.2,
         chord_mm: CHORD_MM,
         closed_around: None,
+        within: None,
     };
     bencher.bench(|| bridge(black_box(&field), wanted, &options).expect("there is room for every bridge"));
 }

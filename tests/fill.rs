@@ -99,6 +99,25 @@ fn a_hole_of_the_domain_stays_empty() {
 }
 
 #[test]
+fn nothing_is_laid_across_a_slit_of_the_domain() {
+    let room = room();
+    let slits: String = (0..5).map(|i| format!("M{0} 8h0.4v38h-0.4Z", 24 + 15 * i)).collect();
+    room.draw("slits.svg", &format!("<path id='slits' fill-rule='evenodd' d='M5 5H115V55H5Z {slits}'/>"));
+    for holes in [0, 12] {
+        let counts = format!("--components 1 --holes {holes}");
+        let (found, _) = fill(&room, &format!("twigs.svg --domain slits.svg#slits {counts}"));
+        assert_eq!((found.components, found.holes), (1, holes));
+        // The page begins one margin before the domain, and y goes up.
+        for i in 0..5 {
+            for y in 11..48 {
+                let x = 24.2 + 15.0 * f64::from(i) - 4.0;
+                assert!(!covers(&found.region, x, f64::from(y)), "slit {i} at {y}");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_band_goes_along_its_curve() {
     let room = room();
     let (ring, _) = fill(&room, "twigs.svg --domain band --along circle:80mm --width 24mm --components 1");

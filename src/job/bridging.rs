@@ -119,13 +119,18 @@ pub(super) fn hint(goal: Goal, best: Topology) -> String {
 }
 
 /// The options of bridges in a band. `inside_mm` is a point on the inner side of a ring, which must stay closed.
-pub(super) fn options(width_mm: f64, tolerances: &Tolerances, inside_mm: Option<DVec2>) -> BridgeOptions {
+pub(super) fn options(
+    width_mm: f64,
+    tolerances: &Tolerances,
+    inside_mm: Option<DVec2>,
+) -> BridgeOptions<'static> {
     BridgeOptions {
         width_mm,
         min_feature_mm: tolerances.min_feature_mm(),
         min_gap_mm: tolerances.min_gap_mm(),
         chord_mm: tolerances.chord_mm(),
         closed_around: inside_mm,
+        within: None,
     }
 }
 
@@ -135,7 +140,11 @@ const JOINS_PER_HOLE: [usize; 2] = [1, 4];
 
 /// `region` with bridges as the goal asks. Where the bays do not suffice for the holes, parts are joined as far as the
 /// goal allows: between two that are joined there is a bay on either side of the strut.
-pub(super) fn bridged(region: &Region, goal: Goal, options: &BridgeOptions) -> Result<Bridged, BridgeError> {
+pub(super) fn bridged(
+    region: &Region,
+    goal: Goal,
+    options: &BridgeOptions<'_>,
+) -> Result<Bridged, BridgeError> {
     let wanted = wanted(goal, Counts::of(region));
     let laid = fabricate::bridge(region, wanted, options);
     let Err(BridgeError::NoPlace { kind: BridgeKind::Enclose, done, needed, .. }) = laid else {

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::planar::{EdgeIndex, GridPoint, Region};
+use crate::planar::{EdgeIndex, FillRule, GridPoint, Region};
 
 /// Corners of an area that is grown are round within this part of what it grows by.
 const GROWN_CHORD: f64 = 0.05;
@@ -58,6 +58,32 @@ impl Area {
         let Ok(p) = self.region.grid().snap(self.home(p)) else { return false };
         let square = self.squares.of(self.region.grid().to_mm(p));
         square.unwrap_or_else(|| covers(&self.region, p))
+    }
+
+    /// Whether all that contours enclose lies inside, decided exactly on the region's grid.
+    pub fn covers_all(&self, contours: &[Vec<DVec2>]) -> bool {
+        let grid = self.region.grid();
+        let Some(&first) = contours.iter().flatten().next() else { return true };
+        let (low, high) = contours.iter().flatten().fold((first, first), |(l, h), &p| (l.min(p), h.max(p)));
+        if self.index.in_box(low, high).next().is_none() {
+            return self.contains(first);
+        }
+        let snapped = |contour: &Vec<DVec2>| contour.iter().map(|&p| grid.snap(p)).collect();
+        let paths: Result<Vec<Vec<GridPoint>>, _> = contours.iter().map(snapped).collect();
+        paths.is_ok_and(|paths| {
+            Region::fill(grid, &paths, FillRule::Positive).without(&self.region).is_empty()
+        })
+    }
+
+    /// Where a straight line crosses the border, as parts of its length, in no particular order. Rounding may miss one through a corner.
+    pub fn crossings(&self, from: DVec2, to: DVec2) -> impl Iterator<Item = f64> + '_ {
+        let way = to - from;
+        self.index.in_box(from.min(to), from.max(to)).filter_map(move |edge| {
+            let side = edge.to - edge.from;
+            let turn = way.perp_dot(side);
+            let [part, place] = [side, way].map(|line| (edge.from - from).perp_dot(line) / turn);
+            ((0.0..=1.0).contains(&part) && (0.0..=1.0).contains(&place)).then_some(part)
+        })
     }
 
     /// The point of the border that is nearest, in the lap of `p`.
@@ -135,7 +161,7 @@ impl Squares {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::planar::{FillRule, Grid};
+    use crate::planar::Grid;
 
     fn rectangle(low: DVec2, high: DVec2) -> Region {
         let grid = Grid::for_extent(1000.0).unwrap();

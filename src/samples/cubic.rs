@@ -17,3 +17,9 @@ pub fn halves(&[p, q, r, s]: &Cubic, t: f64) -> (Cubic, Cubic) {
     let m = d.lerp(e, t);
     ([p, a, d, m], [m, e, c, s])
 }
+
+/// The part from one parameter to a later one.
+pub fn part(cubic: &Cubic, from: f64, until: f64) -> Cubic {
+    let before = halves(cubic, until).0;
+    if from > 0.0 { halves(&before, from / until).1 } else { before }
+}

@@ -5,10 +5,11 @@ use std::rc::Rc;
 
 use rustc_hash::FxHashMap;
 
+use super::fence::Fence;
 use super::ground::{Ground, nearest_step};
 use super::links::{Link, links};
 use super::place::{Place, Prober};
-use super::trial::{Asked, Effort, Purpose, REQUIRED, Site, Verdict};
+use super::trial::{Asked, Effort, GOOD_GRADE, Purpose, REQUIRED, Site, Verdict};
 use super::{Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts};
 use crate::planar::{EdgeIndex, GridPoint, Region, Sets};
 
@@ -41,8 +42,6 @@ const GRADE_WORTH: f64 = 0.5;
 const REQUIRED_WORTH: f64 = 10.0;
 /// Loops are looked for within so many widths first, and then within twice as many, and so on.
 const FIRST_REACH: f64 = 4.0;
-/// The grade that a loop must have while there may be a better place elsewhere.
-const GOOD_GRADE: usize = 1;
 /// After so many places in a row that would not do, there is none: more would only take longer to say so.
 const MOST_FAILURES: usize = 400;
 /// The most that one bridge changes the count by.
@@ -57,7 +56,7 @@ pub(super) fn lay(
     region: &Region,
     kind: BridgeKind,
     needed: usize,
-    options: &BridgeOptions,
+    options: &BridgeOptions<'_>,
     effort: &Effort,
 ) -> Result<Bridged, BridgeError> {
     let side = kind.side();
@@ -74,8 +73,9 @@ pub(super) fn lay(
     // difference, the bridge that makes it is looked for and not laid again.
     let mut banned = Vec::new();
     let mut known = Known::default();
+    let fence = options.within.filter(|_| kind.is_strut()).map(Fence::new);
     for _ in 0..MOST_ROUNDS {
-        let site = Site::new(&ground, side, width_mm, options, effort);
+        let site = Site::new(&ground, side, width_mm, options, fence.as_ref(), effort);
         let mut layer = Layer {
             prober,
             site,
@@ -283,7 +283,7 @@ impl Layer<'_> {
     }
 
     fn verdict(&mut self, place: &Place, purpose: Purpose) -> Option<Verdict> {
-        let asked = self.site.asked(&place.corners, purpose);
+        let asked = self.site.asked(&place.corners, purpose)?;
         let site = &self.site;
         self.known.verdicts.entry(asked).or_insert_with(|| site.try_out(&place.corners, purpose)).clone()
     }

@@ -10,12 +10,13 @@
 //! Ink and gaps are dual, so there is one search for struts and slits ([`ground`]). Distances between contours
 //! are true ones ([`links`]); which place along two contours is taken is a matter of length, squareness and hold
 //! ([`place`]); every bridge is tried out in a window before it is laid, exactly and at the tolerance of a
-//! machine ([`trial`]), and the region with all of them is counted at the end. The work of trying is limited, so that
+//! machine ([`trial`]), and cut to where struts may be ([`fence`]); the region with all of them is counted at the end. The work of trying is limited, so that
 //! a refusal takes seconds too.
 //!
 //! Excluded: filling holes and dropping islands, which changes the drawing instead of holding it together.
 
 mod error;
+mod fence;
 mod ground;
 mod lay;
 mod links;
@@ -58,7 +59,7 @@ impl std::fmt::Display for Counts {
 
 /// How bridges are to be. Lengths are millimetres.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BridgeOptions {
+pub struct BridgeOptions<'a> {
     /// The width of struts and slits; they are wider when the machine needs it.
     pub width_mm: f64,
     /// The narrowest ink that the machine makes; 0 when it was not given.
@@ -70,6 +71,8 @@ pub struct BridgeOptions {
     pub chord_mm: f64,
     /// A point in a gap that no slit may open to the outside: the inside of a ring that must stay closed.
     pub closed_around: Option<DVec2>,
+    /// Where struts may be, with all of their width: a region on the grid of the one that gets them. `None` for anywhere.
+    pub within: Option<&'a Region>,
 }
 
 /// What a bridge is for.
@@ -151,7 +154,7 @@ pub struct Bridged {
 /// # Errors
 /// [`BridgeError`] for options out of range, counts that no region has, and when there is no place for a bridge or
 /// looking for one is given up.
-pub fn bridge(region: &Region, wanted: Counts, options: &BridgeOptions) -> Result<Bridged, BridgeError> {
+pub fn bridge(region: &Region, wanted: Counts, options: &BridgeOptions<'_>) -> Result<Bridged, BridgeError> {
     error::check(region, wanted, options)?;
     let has = Counts::of(region);
     let steps = [

@@ -22,8 +22,15 @@ fn rectangle(x: f64, y: f64, width: f64, height: f64) -> Vec<DVec2> {
     [(x, y), (x + width, y), (x + width, y + height), (x, y + height)].map(DVec2::from).to_vec()
 }
 
-fn options(width_mm: f64) -> BridgeOptions {
-    BridgeOptions { width_mm, min_feature_mm: 0.0, min_gap_mm: 0.0, chord_mm: 0.01, closed_around: None }
+fn options(width_mm: f64) -> BridgeOptions<'static> {
+    BridgeOptions {
+        width_mm,
+        min_feature_mm: 0.0,
+        min_gap_mm: 0.0,
+        chord_mm: 0.01,
+        closed_around: None,
+        within: None,
+    }
 }
 
 fn counts(components: usize, holes: usize) -> Counts {
@@ -305,4 +312,23 @@ fn without_effort_left_the_search_is_given_up_and_says_so() {
     let error = lay(&spent).unwrap_err();
     assert_eq!(error, BridgeError::TooMuch { kind: BridgeKind::Join, done: 0, needed: 1, width_mm: 1.0 });
     assert!(error.to_string().contains("was given up"));
+}
+
+#[test]
+fn struts_stay_where_they_may_be() {
+    // Two bars, and between them a slit that only lets pass what is right of x = 30, and there no more than up to y = 12.
+    let bars = region(&[rectangle(2.0, 2.0, 40.0, 4.0), rectangle(2.0, 9.0, 40.0, 4.0)]);
+    let ends_at = |x: f64| region(&[rectangle(0.0, 0.0, 50.0, 14.0), rectangle(0.0, 7.0, x, 1.0)]);
+    let laid = |domain: &Region| {
+        bridge(&bars, counts(1, 0), &BridgeOptions { within: Some(domain), ..options(1.5) })
+    };
+    let domain = ends_at(30.0);
+    let joined = laid(&domain).unwrap();
+    assert!(joined.bridges[0].from_mm[0] > 30.0, "{:?}", joined.bridges);
+    assert!(joined.region.without(&domain).is_empty());
+    // Where there is room for a part of its width only, that has to hold.
+    let narrow = ends_at(41.2);
+    let joined = laid(&narrow).unwrap();
+    assert!(joined.region.without(&narrow).is_empty());
+    assert!(matches!(laid(&ends_at(50.0)), Err(BridgeError::NoPlace { .. })));
 }

@@ -15,12 +15,15 @@ use std::cell::Cell;
 use glam::DVec2;
 
 use super::BridgeOptions;
+use super::fence::Fence;
 use super::ground::{Ground, Side, nearest_step};
 use super::thin::thinned;
 use crate::planar::{Contour, FillRule, Grid, GridPoint, Part, Region};
 
 /// Erosions that a good bridge withstands, as parts of its width, the best first; then only what is required.
 const GRADES: [f64; 3] = [0.35, 0.2, 0.08];
+/// The grade that a bridge must have where there may be a better place elsewhere.
+pub(super) const GOOD_GRADE: usize = 1;
 /// The grade of a bridge that withstands what is required and no more; one grade more and it does not.
 pub(super) const REQUIRED: usize = GRADES.len();
 /// What every bridge withstands, in chord errors: two of half of it meet in a fitted curve.
@@ -118,6 +121,8 @@ pub(super) struct Site<'a> {
     thin: [Vec<Vec<GridPoint>>; 2],
     /// Bridges laid, counter-clockwise.
     laid: Vec<Laid>,
+    /// Where struts may be, if not anywhere.
+    fence: Option<&'a Fence<'a>>,
     effort: &'a Effort,
 }
 
@@ -125,6 +130,8 @@ struct Laid {
     path: Vec<GridPoint>,
     low: DVec2,
     high: DVec2,
+    /// Whether there is less of it than its corners say.
+    is_cut: bool,
 }
 
 impl Laid {
@@ -132,7 +139,7 @@ impl Laid {
         let corners = || path.iter().map(|&p| grid.to_mm(p));
         let low = corners().reduce(DVec2::min).unwrap_or_default();
         let high = corners().reduce(DVec2::max).unwrap_or_default();
-        Self { path, low, high }
+        Self { path, low, high, is_cut: false }
     }
 }
 
@@ -142,7 +149,8 @@ impl<'a> Site<'a> {
         ground: &'a Ground,
         side: Side,
         width_mm: f64,
-        options: &BridgeOptions,
+        options: &BridgeOptions<'_>,
+        fence: Option<&'a Fence<'a>>,
         effort: &'a Effort,
     ) -> Self {
         let half = |mm: f64| 0.5 * mm * SURPLUS;
@@ -156,13 +164,24 @@ impl<'a> Site<'a> {
             let slack = ground.grid.steps(mm) as f64;
             ground.rims.iter().map(|rim| thinned(&rim.steps, slack)).collect()
         });
-        Self { ground, side, width_mm, erosion_mm, dilation_mm, least_mm, thin, laid: Vec::new(), effort }
+        Self {
+            ground,
+            side,
+            width_mm,
+            erosion_mm,
+            dilation_mm,
+            least_mm,
+            thin,
+            laid: Vec::new(),
+            fence,
+            effort,
+        }
     }
 
     /// Lays a bridge and fills its pockets; how many outlines there are then.
     pub(super) fn lay(&mut self, corners: &[DVec2; 4], pockets: &[Vec<GridPoint>]) -> usize {
         let grid = self.ground.grid;
-        self.laid.push(self.on_grid(corners));
+        self.laid.extend(self.on_grid(corners));
         self.laid.extend(pockets.iter().map(|path| Laid::new(grid, path.clone())));
         self.laid.len()
     }
@@ -177,11 +196,11 @@ impl<'a> Site<'a> {
         Region::fill(self.ground.grid, &ink.chain(laid).collect::<Vec<_>>(), FillRule::Positive)
     }
 
-    /// All that the verdict on a bridge depends on, as the contours are always the same.
-    pub(super) fn asked(&self, corners: &[DVec2; 4], purpose: Purpose) -> Asked {
-        let bridge = self.on_grid(corners);
+    /// All that the verdict on a bridge depends on, as the contours are always the same; `None` where no bridge may be.
+    pub(super) fn asked(&self, corners: &[DVec2; 4], purpose: Purpose) -> Option<Asked> {
+        let bridge = self.on_grid(corners)?;
         let [low, high] = self.window_around(&bridge);
-        Asked { beside: self.laid_in(low, high).cloned().collect(), corners: bridge.path, purpose }
+        Some(Asked { beside: self.laid_in(low, high).cloned().collect(), corners: bridge.path, purpose })
     }
 
     fn window_around(&self, bridge: &Laid) -> [DVec2; 2] {
@@ -197,7 +216,7 @@ impl<'a> Site<'a> {
 
     /// Tries a bridge; `None` when it does not serve its purpose.
     pub(super) fn try_out(&self, corners: &[DVec2; 4], purpose: Purpose) -> Option<Verdict> {
-        let bridge = self.on_grid(corners);
+        let bridge = self.on_grid(corners)?;
         let [low, high] = self.window_around(&bridge);
         let mut paths = self.window(low, high, |rim| &self.ground.rims[rim].steps);
         let before = paths.len();
@@ -235,6 +254,8 @@ impl<'a> Site<'a> {
         let graded = GRADES.into_iter().chain([0.0]).map(|part| {
             [self.erosion_mm, self.dilation_mm].map(|mm| mm.max(part * self.width_mm).max(self.least_mm))
         });
+        // Of what was cut off enough has to be left, whatever the machine needs.
+        let worst = if bridge.is_cut { GOOD_GRADE } else { usize::MAX };
         let levels: Vec<[f64; 2]> = graded.chain([[self.least_mm; 2]]).collect();
         let thin = thin_pair(&self.thin[0]);
         // What withstands more need not withstand less: walls that are gone with more hide what the bridge does to them.
@@ -267,7 +288,7 @@ impl<'a> Site<'a> {
             let ink = |paths: &[Vec<GridPoint>]| euler(&self.inverse(paths, low, high));
             ink(&paths) - ink(&paths[..before]) == change.holes - change.components
         };
-        is_true.then_some(Verdict { grade, changes, pockets, area_mm2 })
+        (is_true && grade <= worst).then_some(Verdict { grade, changes, pockets, area_mm2 })
     }
 
     /// The smallest holes that are new, if they are small.
@@ -282,7 +303,13 @@ impl<'a> Site<'a> {
         new.truncate(count);
         let largest = LARGEST_POCKET * self.width_mm * self.width_mm;
         let are_small = new.iter().all(|hole| hole.area_mm2(self.ground.grid).abs() <= largest);
-        are_small.then(|| new.iter().map(|hole| hole.points().iter().rev().copied().collect()).collect())
+        let pockets = || -> Vec<Vec<GridPoint>> {
+            new.iter().map(|hole| hole.points().iter().rev().copied().collect()).collect()
+        };
+        let may_fill = |pockets: &Vec<Vec<GridPoint>>| {
+            self.fence.is_none_or(|fence| pockets.iter().all(|pocket| fence.covers(pocket)))
+        };
+        are_small.then(pockets).filter(may_fill)
     }
 
     fn offset(&self, region: &Region, radius_mm: f64) -> Region {
@@ -290,9 +317,14 @@ impl<'a> Site<'a> {
         region.offset(radius_mm, ARC * radius_mm.abs())
     }
 
-    fn on_grid(&self, corners: &[DVec2; 4]) -> Laid {
+    /// The outline of a bridge, cut to where it may be.
+    fn on_grid(&self, corners: &[DVec2; 4]) -> Option<Laid> {
         let grid = self.ground.grid;
-        Laid::new(grid, corners.iter().map(|&p| nearest_step(grid, p)).collect())
+        let path: Vec<GridPoint> = corners.iter().map(|&p| nearest_step(grid, p)).collect();
+        let Some(fence) = self.fence else { return Some(Laid::new(grid, path)) };
+        let is_cut = !fence.covers(&path);
+        let inside = if is_cut { fence.inside(&path)? } else { path };
+        Some(Laid { is_cut, ..Laid::new(grid, inside) })
     }
 
     /// What is not material in the window.

@@ -273,6 +273,21 @@ impl Ground {
         Ok((one, grid.mm(at)))
     }
 
+    /// Where bridges may be: in the domain, and where what is kept reaches beyond it, all around; never in the domain's holes.
+    pub(super) fn for_bridges(&self, kept: &Region) -> Region {
+        let (domain, grid) = (&self.domain, self.grid());
+        if kept.without(domain).is_empty() {
+            return domain.clone();
+        }
+        let outlines: Vec<Vec<GridPoint>> =
+            domain.parts().iter().map(|part| part.exterior().points().to_vec()).collect();
+        let holes = Region::fill(grid, &outlines, FillRule::Positive).without(domain);
+        let page =
+            [DVec2::ZERO, DVec2::new(self.page_mm.x, 0.0), self.page_mm, DVec2::new(0.0, self.page_mm.y)];
+        let page = page.map(|p| GridPoint::new(grid.steps(p.x), grid.steps(p.y))).to_vec();
+        Region::union(grid, [&Region::fill(grid, &[page], FillRule::Positive).without(&holes), kept])
+    }
+
     /// The ink that is inside of the domain.
     pub(super) fn clipped(&self, ink: &Region) -> Region {
         ink.within(&self.domain)

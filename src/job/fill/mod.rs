@@ -34,7 +34,7 @@ use super::part::Part;
 use super::report::{FlatPattern, InputReport};
 use super::stage::{Clock, Stage};
 use super::surface::SurfaceOptions;
-use crate::fabricate::Counts;
+use crate::fabricate::{BridgeOptions, Counts};
 use crate::planar::Region;
 use crate::samples::{self, Drawing, Given};
 use crate::topology::Wanted;
@@ -134,7 +134,7 @@ impl Fill {
                 file: options.exemplar.display().to_string(),
                 sha256: linework.sha256().to_owned(),
             },
-            domain_file: ground.input,
+            domain_file: ground.input.clone(),
             kept,
             domain_mm2,
             pen_mm,
@@ -152,7 +152,7 @@ impl Fill {
         };
         let is_closed = sheet.as_ref().is_some_and(Sheet::is_closed);
         if !is_closed {
-            fill.bridge(lacking.clone(), &mut clock)?;
+            fill.bridge(&ground.for_bridges(&kept_ink), lacking.clone(), &mut clock)?;
             fill.keep(&kept_ink)?;
         }
         if let Some(mended) = options.making.enforced(&fill.region, &mut clock)? {
@@ -186,7 +186,12 @@ impl Fill {
     }
 
     /// Lays bridges where the goal is not met, by the pattern's own edges or since it was clipped.
-    fn bridge(&mut self, lacking: Option<String>, clock: &mut Clock<'_>) -> Result<(), JobError> {
+    fn bridge(
+        &mut self,
+        within: &Region,
+        lacking: Option<String>,
+        clock: &mut Clock<'_>,
+    ) -> Result<(), JobError> {
         let options = &self.job.options;
         if self.region.is_empty() {
             return Err(refused(
@@ -211,7 +216,9 @@ impl Fill {
             ));
         }
         let laid = clock.time(Stage::Bridge, || {
-            bridging::bridged(&self.region, options.goal, &bridging::options(width_mm, &tolerances, None))
+            let bridges = bridging::options(width_mm, &tolerances, None);
+            let bridges = BridgeOptions { within: Some(within), ..bridges };
+            bridging::bridged(&self.region, options.goal, &bridges)
         });
         let laid = laid.map_err(|error| match lacking {
             Some(lacking) => JobError::Refused(format!("{lacking}; bridges do not help: {error}")),

@@ -16,7 +16,7 @@ use crate::samples::{Edge, Kind};
 
 /// A component of less ink than this many squares of the pen may be taken away where that is less than joining it.
 const SMALL_PENS: f64 = 8.0;
-/// Candidates for each pair of components, as the cheapest may be in the way of something.
+/// Candidates for each pair of components at first, as something may be in the way of the cheapest.
 const PER_PAIR: usize = 6;
 /// A stroke that closes a hole has at least so many edges between its ends, or where there is no such, so many.
 const FAR_HOPS: usize = 6;
@@ -82,7 +82,7 @@ impl Planner<'_, '_> {
         }
         let mut reach_mm = 3.0 * scene.spacing_mm;
         for doubling in 0..=DOUBLINGS {
-            for ([p, q], link) in self.between_parts(reach_mm, PER_PLACE << doubling, &mut sets) {
+            for ([p, q], link) in self.between_parts(reach_mm, doubling, &mut sets) {
                 if steps.len() == needed {
                     return steps;
                 }
@@ -195,8 +195,9 @@ impl Planner<'_, '_> {
         (!(self.is_banned)(&step)).then_some(step)
     }
 
-    /// Links between parts that are not in one set yet, from each place to the nearest `most` parts, the cheapest first.
-    fn between_parts(&self, reach_mm: f64, most: usize, sets: &mut Sets) -> Vec<([usize; 2], Link)> {
+    /// Links within a reach between parts that are not in one set yet, the cheapest first. With each doubling of the reach more are given.
+    fn between_parts(&self, reach_mm: f64, doubling: u32, sets: &mut Sets) -> Vec<([usize; 2], Link)> {
+        let [most, per_pair] = [PER_PLACE, PER_PAIR].map(|count| count << doubling);
         let mut found: BTreeMap<[usize; 2], Vec<(f64, Link)>> = BTreeMap::new();
         let largest = self.largest_set(sets);
         let set_of: Vec<usize> = (0..self.scene.region.components()).map(|part| sets.find(part)).collect();
@@ -221,16 +222,16 @@ impl Planner<'_, '_> {
                 }
                 seen.push(other);
                 let link = Link::smooth(self.scene, &port, &self.landing(line, port.at));
-                found
-                    .entry([part.min(other), part.max(other)])
-                    .or_default()
-                    .push((link.cost(self.scene), link));
+                if link.is_inside(self.scene) {
+                    let pair = [part.min(other), part.max(other)];
+                    found.entry(pair).or_default().push((link.cost(self.scene), link));
+                }
             }
         }
         let mut links: Vec<(f64, [usize; 2], Link)> = Vec::new();
         for (pair, mut candidates) in found {
             candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
-            candidates.truncate(PER_PAIR);
+            candidates.truncate(per_pair);
             let settled = candidates.into_iter().map(|(cost, link)| self.settled(cost, link));
             links.extend(settled.map(|(cost, link)| (cost, pair, link)));
         }
@@ -270,8 +271,13 @@ impl Planner<'_, '_> {
     /// Links that would enclose a hole with more than `hops` edges around it, the cheapest first.
     fn within_parts(&self, reach_mm: f64, hops: usize) -> Vec<Link> {
         let mut links: Vec<(f64, Link)> = Vec::new();
+        // What is near an element's outline is mostly the stem that it hangs on.
+        let stems = self.scene.around_contours(hops);
         for (part, port) in self.ports() {
-            let own = self.scene.own_within(port.foot, port.owner, hops);
+            let mut own = self.scene.own_within(port.foot, port.owner, hops);
+            if let Some(Owner::Contour(contour)) = port.owner {
+                own.extend(stems[contour].iter().copied().map(Owner::Edge));
+            }
             let near = self.scene.lines.nearest_first(port.at).take_while(|&(way_mm, _)| way_mm <= reach_mm);
             let others = near
                 .filter(|(_, line)| self.scene.part(line.owner) == Some(part) && !own.contains(&line.owner));

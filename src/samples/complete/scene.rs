@@ -1,5 +1,7 @@
 //! The pattern with its ink, and what of it is one component.
 
+use glam::DVec2;
+
 use super::lines::{Lines, Owner};
 use super::places::Places;
 use super::work::{Foot, Work};
@@ -47,7 +49,7 @@ impl<'a> Scene<'a> {
         let frame_parts = work.frame.iter().map(|curve| {
             let first = curve.path.segments().next()?;
             let p = kurbo::ParamCurve::eval(&first, 0.5);
-            part(glam::DVec2::new(p.x, p.y))
+            part(DVec2::new(p.x, p.y))
         });
         let frame_parts = frame_parts.collect();
         let (lines, by_sample) = (Lines::new(&work), work.edges_by_sample());
@@ -89,12 +91,17 @@ impl<'a> Scene<'a> {
 
     /// The ink that hangs on to a foot by so many samples, in the order of its owners.
     pub fn own_within(&self, foot: Foot, owner: Option<Owner>, hops: usize) -> Vec<Owner> {
-        let mut edges = Vec::new();
-        let mut samples = match foot {
+        let samples = match foot {
             Foot::Sample(sample) => vec![sample],
             Foot::Edge(edge, _) => self.work.edges[edge].ends.to_vec(),
             Foot::Ink(_) => Vec::new(),
         };
+        self.around(samples, hops).into_iter().map(Owner::Edge).chain(owner).collect()
+    }
+
+    /// The edges that lead away from samples and on, so many one after the other, in ascending order.
+    fn around(&self, mut samples: Vec<usize>, hops: usize) -> Vec<usize> {
+        let mut edges = Vec::new();
         for _ in 0..hops {
             let around: Vec<usize> =
                 samples.iter().flat_map(|&sample| &self.by_sample[sample]).copied().collect();
@@ -105,7 +112,25 @@ impl<'a> Scene<'a> {
         }
         edges.sort_unstable();
         edges.dedup();
-        edges.into_iter().map(Owner::Edge).chain(owner).collect()
+        edges
+    }
+
+    /// For each contour of an element, the edges that hang on to it by so many samples.
+    pub fn around_contours(&self, hops: usize) -> Vec<Vec<usize>> {
+        let contours = self.work.elements.iter().flat_map(|element| &element.contours);
+        let touching = |&p: &DVec2| self.lines.near(p, 0.0).into_iter().map(|(_, line)| line.owner);
+        let ends = |owner| match owner {
+            Owner::Edge(edge) => self.work.edges.get(edge).map_or(Vec::new(), |edge| edge.ends.to_vec()),
+            _ => Vec::new(),
+        };
+        contours
+            .map(|contour| {
+                let mut samples: Vec<usize> = contour.iter().flat_map(touching).flat_map(ends).collect();
+                samples.sort_unstable();
+                samples.dedup();
+                self.around(samples, hops)
+            })
+            .collect()
     }
 
     /// The edge of a path that ends at a sample in the open: neither another edge nor other ink is there.
