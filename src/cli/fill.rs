@@ -305,22 +305,16 @@ fn say_fill(report: &FillReport) {
         report.holes,
         report.domain_mm2 / 100.0
     );
-    let (learnt, made) = (&report.exemplar_density, &report.density);
-    say!(
-        "on 100 cm2: {:.1} component(s), {:.1} hole(s), {:.1} free end(s); the exemplar has {:.1}, {:.1} and {:.1}",
-        made.components,
-        made.holes,
-        made.dangling_ends,
-        learnt.components,
-        learnt.holes,
-        learnt.dangling_ends
-    );
+    say_densities(report);
     let mut kinds: Vec<&str> = report.changes.iter().map(|change| change.kind).collect();
     kinds.sort_unstable();
     let counted: Vec<String> =
         kinds.chunk_by(|a, b| a == b).map(|same| format!("{} {}", same.len(), same[0])).collect();
     if !counted.is_empty() {
         say!("{} change(s): {}; --report lists their positions", kinds.len(), counted.join(", "));
+        if report.wanted_components.is_some() || report.wanted_holes.is_some() {
+            say!("by itself the pattern has {}", report.own);
+        }
     }
     say_bridges(report.bridges.as_ref(), BRIDGES_SHOWN);
     let widths = [("ink", &report.narrow_places.ink), ("gap", &report.narrow_places.gaps)];
@@ -334,4 +328,17 @@ fn say_fill(report: &FillReport) {
     for file in &report.files {
         say!("wrote {file}");
     }
+}
+
+/// What there is on an area like the exemplar's, but for what was asked for.
+fn say_densities(report: &FillReport) {
+    let (made, learnt) = (&report.density, &report.exemplar_density);
+    let counts = [
+        ("component(s)", made.components, learnt.components, report.wanted_components.is_none()),
+        ("hole(s)", made.holes, learnt.holes, report.wanted_holes.is_none()),
+        ("free end(s)", made.dangling_ends, learnt.dangling_ends, true),
+    ];
+    let told = counts.iter().filter(|(.., is_free)| *is_free);
+    let told = told.map(|(what, made, learnt, _)| format!("{made:.1} {what} ({learnt:.1})"));
+    say!("on 100 cm2 (in the exemplar): {}", told.collect::<Vec<_>>().join(", "));
 }

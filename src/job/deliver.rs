@@ -19,6 +19,8 @@ use super::stage::{Clock, Stage};
 
 /// Ink thinner than this is worth a warning, in millimetres: about the width of a laser's cut.
 const HAIRLINE_MM: f64 = 0.1;
+/// What makes all of a band larger.
+const LARGER: &str = "a larger --width";
 
 impl Band {
     /// Encodes every output, reads each again, counts, and gives them their names only if all pass. The report
@@ -161,10 +163,10 @@ impl Band {
             ));
         }
         let narrowest_mm = found.min_feature.map(|n| n.width_mm);
-        let lost = small::warnings(&self.part.region, &self.job.tolerances, outputs, narrowest_mm);
+        let lost = small::warnings(&self.part.region, &self.job.tolerances, outputs, narrowest_mm, LARGER);
         report.made.notes.extend(lost);
         let can_enforce = self.can_enforce();
-        report.made.notes.extend(blind::notes(&narrow_places, &self.kept_tolerances(), can_enforce));
+        report.made.notes.extend(blind::notes(&narrow_places, &self.kept_tolerances(), can_enforce, LARGER));
         report.made.laser = cutting.map(|cutting| cutting.report);
         report.made.bytes = sizes;
         // What was found, or in space what was found in the solid or follows from the sides of the drawing.

@@ -127,6 +127,7 @@ pub(super) fn extruded(
         bridges: bridges.as_ref().map_or(&[][..], |report| &report.bridges),
         making,
         lain: None,
+        larger: "a larger drawing",
     };
     let made = flat.made(file, outputs, &mut clock)?;
     notes.extend(made.notes);

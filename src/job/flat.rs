@@ -127,6 +127,8 @@ pub(super) struct Flat<'f> {
     pub(super) making: &'f FlatMaking,
     /// Where it lies, if that is not in the plane; then the drawing is the part laid flat.
     pub(super) lain: Option<Lain<'f>>,
+    /// What would make all of it larger, for remedies.
+    pub(super) larger: &'static str,
 }
 
 /// A part along a curve in space.
@@ -305,8 +307,8 @@ impl Flat<'_> {
         };
         let narrowest_mm = narrow_places.ink.first().map(|n| n.width_mm);
         let mut notes = raised.notes.clone();
-        notes.extend(small::warnings(region, tolerances, outputs, narrowest_mm));
-        notes.extend(blind::notes(&narrow_places, tolerances, !enforce));
+        notes.extend(small::warnings(region, tolerances, outputs, narrowest_mm, self.larger));
+        notes.extend(blind::notes(&narrow_places, tolerances, !enforce, self.larger));
         Ok(FlatMade {
             pending,
             raised: raised.solid().cloned(),

@@ -110,7 +110,7 @@ impl Raised {
         }
         raised.map_err(|error| match error {
             JobError::Mismatch { file, mismatch: mismatch @ Mismatch::Faults { .. }, .. } => {
-                let remedy = "; ink or gaps are too fine for facets there: use a larger --width, or --min-feature and --min-gap, which say where that is";
+                let remedy = "; ink or gaps are too fine for facets there: make it larger, or give --min-feature and --min-gap, which say where that is";
                 JobError::Mismatch { file, mismatch, remedy: remedy.to_owned() }
             }
             error => error,

@@ -17,32 +17,33 @@ const NOZZLE_MM: f64 = 0.4;
 const SPECK_MM2: f64 = 0.01;
 
 /// Warnings of parts of `region` that are lost when `outputs` are made, if no minimum feature was asked for. `narrowest_mm`
-/// is its narrowest ink, so that what is wide needs no search.
+/// is its narrowest ink, so that what is wide needs no search, and `larger` what would make all of it larger.
 pub(super) fn warnings(
     region: &Region,
     tolerances: &Tolerances,
     outputs: &[Output],
     narrowest_mm: Option<f64>,
+    larger: &str,
 ) -> Vec<String> {
     let mut warnings = Vec::new();
     let is_printed = outputs.iter().any(|output| output.format().is_solid());
     let is_wide = tolerances.min_feature_mm() > 0.0 || narrowest_mm.is_some_and(|mm| mm >= NOZZLE_MM);
     if is_printed && !is_wide {
         let lost = thin_everywhere(region, NOZZLE_MM);
-        warnings.extend(lost.first().map(|&first| of_thin(lost.len(), region.components(), first)));
+        warnings.extend(lost.first().map(|&first| of_thin(lost.len(), region.components(), first, larger)));
     }
     let tiny = smaller_than(region, SPECK_MM2);
     if let Some(first) = tiny.first() {
         warnings.push(format!(
-            "{WARNING}{} component(s) or hole(s) are smaller than {SPECK_MM2} mm2, the first at ({:.2}, {:.2}) mm, and will not come out; a larger --width makes them larger",
+            "{WARNING}{} component(s) or hole(s) are smaller than {SPECK_MM2} mm2, the first at ({:.2}, {:.2}) mm, and will not come out; {larger} makes them larger",
             tiny.len(), first.x, first.y
         ));
     }
     warnings
 }
 
-fn of_thin(lost: usize, of: usize, first: DVec2) -> String {
-    let rest = "; --process fdm-0.4 --enforce makes them as wide, a larger --width all of the ink";
+fn of_thin(lost: usize, of: usize, first: DVec2, larger: &str) -> String {
+    let rest = format!("; --process fdm-0.4 --enforce makes them as wide, {larger} all of the ink");
     let place = format!("({:.1}, {:.1}) mm", first.x, first.y);
     match lost == of {
         true => format!(
@@ -65,7 +66,7 @@ mod tests {
         let region = boxes(step, FillRule::EvenOdd, &[(0, 0, 50, 50), (100, 0, 3, 50), (200, 0, 1, 9)]);
         let none = Tolerances::default();
         let tell = |file: &str, tolerances: &Tolerances| {
-            warnings(&region, tolerances, &[Output::file(file).unwrap()], None)
+            warnings(&region, tolerances, &[Output::file(file).unwrap()], None, "a larger --width")
         };
         let printed = tell("a.stl", &none);
         assert_eq!(printed.len(), 1, "{printed:?}");
@@ -73,11 +74,14 @@ mod tests {
         assert!(printed[0].contains("(10.1, 2.5) mm"), "{printed:?}");
         assert!(tell("a.dxf", &none).is_empty());
         let speck = boxes(step, FillRule::EvenOdd, &[(0, 0, 1, 9), (50, 0, 1, 1)]).offset(-0.01, 0.001);
-        let told = warnings(&speck, &none, &[Output::file("a.3mf").unwrap()], Some(0.01));
+        let told = warnings(&speck, &none, &[Output::file("a.3mf").unwrap()], Some(0.01), "a larger --width");
         assert!(
             told[0].contains("all ink is thinner") && told[1].contains("1 component(s) or hole(s)"),
             "{told:?}"
         );
-        assert!(warnings(&region, &none, &[Output::file("a.stl").unwrap()], Some(0.4)).is_empty());
+        assert!(
+            warnings(&region, &none, &[Output::file("a.stl").unwrap()], Some(0.4), "a larger --width")
+                .is_empty()
+        );
     }
 }

@@ -7,11 +7,13 @@ use serde::Serialize;
 
 use super::FillJob;
 use super::ground::{Ground, grid_error};
+use crate::fabricate::Counts;
 use crate::job::error::JobError;
 use crate::job::stage::{Clock, Stage};
 use crate::planar::{Contour, Region};
 use crate::samples::{
-    self, ChangeKind, CompleteError, CompleteOptions, Drawing, Element, Given, LevelReport, SampleError,
+    self, ChangeKind, CompleteError, CompleteOptions, Drawing, Element, Given, LevelReport, Options,
+    SampleError,
 };
 
 /// The part of the chord error that strokes may spend while they are completed.
@@ -54,6 +56,8 @@ pub(super) struct Pattern {
     pub(super) drawing: Drawing,
     /// What it covers.
     pub(super) region: Region,
+    /// Components and holes before anything was done for the goal.
+    pub(super) own: Counts,
     pub(super) changes: Vec<ChangeReport>,
     pub(super) levels: Vec<LevelReport>,
     /// What could not be met by edges of the pattern alone.
@@ -65,18 +69,17 @@ pub(super) struct Pattern {
 /// # Errors
 /// [`JobError`] when there is no pattern.
 pub(super) fn pattern(
-    job: &FillJob,
+    (job, constants): (&FillJob, &Options),
     exemplar: &Drawing,
     ground: &Ground,
     given: &Given,
     ends_wanted: usize,
     clock: &mut Clock<'_>,
 ) -> Result<Pattern, JobError> {
-    let constants = job.constants(exemplar);
     let synthesis = clock.time_telling(Stage::Synthesize, |tell| {
         let mut progress =
             |level, iteration| tell(Stage::Iterate { level: level + 1, iteration: iteration + 1 });
-        samples::synthesize(exemplar, &ground.area, &constants, given, &mut progress)
+        samples::synthesize(exemplar, &ground.area, constants, given, &mut progress)
     });
     let synthesis = synthesis.map_err(|error| unlearnt(&job.options.exemplar, error))?;
     let placed = synthesis.elements.placed.iter().map(|placed| Element {
@@ -100,7 +103,7 @@ pub(super) fn pattern(
     let is_given: Vec<bool> = graph.samples.iter().map(|sample| sample.is_given).collect();
     graph.edges.retain(|edge| !edge.ends.iter().all(|&end| is_given[end]));
     let completed = clock.time(Stage::Complete, || {
-        samples::complete(&graph, &elements, &ground.area, &constants, &job.options.goal, &completing)
+        samples::complete(&graph, &elements, &ground.area, constants, &job.options.goal, &completing)
     });
     let (completed, lacking) = match completed {
         Ok(completed) => (completed, None),
@@ -118,6 +121,7 @@ pub(super) fn pattern(
     Ok(Pattern {
         drawing,
         region: completed.region,
+        own: Counts { components: completed.own[0], holes: completed.own[1] },
         changes: completed.changes.iter().map(ChangeReport::new).collect(),
         levels: synthesis.levels,
         lacking,

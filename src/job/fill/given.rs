@@ -10,8 +10,9 @@ use super::builder::refused;
 use crate::exemplar::{Limits, Linework, ReadOptions};
 use crate::job::error::JobError;
 use crate::job::flat::READ_SHARE;
+use crate::job::notes::WARNING;
 use crate::planar::{Chords, chords};
-use crate::samples::{Curve, Drawing, Element};
+use crate::samples::{Curve, Drawing, Element, Level};
 
 /// Strokes that run beside each other nearer than this part of the narrower pen lie upon each other.
 const UPON: f64 = 0.25;
@@ -126,6 +127,29 @@ fn dotted(curve: &Curve, step_mm: f64) -> Vec<DVec2> {
         }
     }
     dots
+}
+
+/// Shapes larger than a neighbourhood of this many radii are not learnt from.
+const NEIGHBOURHOOD_RADII: f64 = 2.0;
+
+/// A note on shapes that no neighbourhood holds: they are one sample each, which sees nothing of what is around them.
+pub(super) fn oversize(exemplar: &Drawing, levels: &[Level]) -> Option<String> {
+    let radius_mm = levels.iter().map(|level| level.radius_mm).fold(0.0, f64::max);
+    let size = |element: &Element| {
+        let points = || element.contours.iter().flatten().copied();
+        points().reduce(DVec2::max).unwrap_or_default() - points().reduce(DVec2::min).unwrap_or_default()
+    };
+    let sizes = exemplar.elements.iter().map(size);
+    let large: Vec<DVec2> =
+        sizes.filter(|size| size.max_element() > NEIGHBOURHOOD_RADII * radius_mm).collect();
+    let largest = large.iter().copied().max_by(|a, b| a.max_element().total_cmp(&b.max_element()))?;
+    Some(format!(
+        "{WARNING}{} of {} shape(s) of the exemplar do not fit into a neighbourhood of {radius_mm:.1} mm, the largest is {:.1} mm by {:.1} mm: their surroundings are not seen, and they may come to lie over one another; draw such ornament as strokes, or give larger --radii",
+        large.len(),
+        exemplar.elements.len(),
+        largest.x,
+        largest.y
+    ))
 }
 
 #[cfg(test)]

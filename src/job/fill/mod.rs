@@ -63,6 +63,7 @@ pub struct Fill {
     pen_mm: f64,
     densities: [Density; 2],
     levels: Vec<LevelReport>,
+    own: Counts,
     changes: Vec<ChangeReport>,
     bridges: Option<BridgesReport>,
     enforced: Option<EnforcedReport>,
@@ -115,10 +116,13 @@ impl Fill {
         }
         given.clones = options.clones.iter().map(|clone| clone.placed(ground.shift_mm)).collect();
         let (learnt, side_mm) = density_of(&options.exemplar, &exemplar, &linework, chord_mm)?;
+        let constants = job.constants(&exemplar);
+        notes.extend(given::oversize(&exemplar, &constants.levels));
         let domain_mm2 = ground.domain.area_mm2();
         let ends_wanted = (learnt.dangling_ends * domain_mm2 / census::AREA_MM2).round() as usize;
-        let pattern = engine::pattern(job, &exemplar, &ground, &given, ends_wanted, &mut clock)?;
-        let Pattern { drawing, region, changes, levels, lacking } = pattern;
+        let pattern =
+            engine::pattern((job, &constants), &exemplar, &ground, &given, ends_wanted, &mut clock)?;
+        let Pattern { drawing, region, own, changes, levels, lacking } = pattern;
         let (drawing, region, cut_mm) =
             clock.time(Stage::Map, || laid(&ground, drawing, region, chord_mm))?;
         let kept_ink = ground.kept(&given.drawing, INK_SHARE * chord_mm)?;
@@ -140,6 +144,7 @@ impl Fill {
             pen_mm,
             densities: [learnt, density],
             levels,
+            own,
             changes,
             bridges: None,
             enforced: None,
@@ -307,6 +312,7 @@ impl Fill {
                 map: &sheet.map,
                 ground: sheet.model.as_ref(),
             }),
+            larger: "an exemplar drawn larger",
         };
         let blamed = outputs.first().map_or_else(|| "the pattern".into(), |output| name(output.target()));
         let made = flat.made(&blamed, outputs, &mut clock)?;
@@ -330,6 +336,7 @@ impl Fill {
             wanted_holes: options.goal.holes.map(Wanted::ends),
             components: counts.components,
             holes: counts.holes,
+            own: self.own,
             flat: self.flat_pattern(),
             exemplar_density,
             density,

@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::census::Density;
 use super::engine::ChangeReport;
+use crate::fabricate::Counts;
 use crate::job::bridging::BridgesReport;
 use crate::job::json;
 use crate::job::laser::LaserReport;
@@ -51,6 +52,8 @@ pub struct FillReport {
     pub components: usize,
     /// Holes of the pattern, likewise.
     pub holes: usize,
+    /// Components and holes of the pattern by itself, before anything was done for the counts that were asked for and before it was clipped.
+    pub own: Counts,
     /// What the drawing is of a strip in space; null for what lies in the plane.
     pub flat: Option<FlatPattern>,
     /// Counts of the exemplar on its area.

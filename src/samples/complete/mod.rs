@@ -130,6 +130,8 @@ pub struct Completed {
     pub components: usize,
     /// Holes, counted likewise.
     pub holes: usize,
+    /// Components and holes of the pattern by itself: tidied, and before anything was done for the goal.
+    pub own: [usize; 2],
     /// What was changed, in this order.
     pub changes: Vec<Change>,
 }
@@ -176,14 +178,17 @@ pub fn complete(
     if scene.region.is_empty() {
         return Err(CompleteError::Empty);
     }
-    let mut run = Completion { goal, changes: Vec::new(), banned: Vec::new(), trials: 0, nearest: None };
+    let mut run =
+        Completion { goal, own: [0; 2], changes: Vec::new(), banned: Vec::new(), trials: 0, nearest: None };
     let scene = run.tidied(scene)?;
+    run.own = [scene.region.components(), scene.region.holes()];
     run.met(scene)
 }
 
 /// The work on one pattern.
 struct Completion<'a> {
     goal: &'a Goal,
+    own: [usize; 2],
     changes: Vec<Change>,
     /// Changes that brought nothing.
     banned: Vec<Change>,
@@ -339,6 +344,7 @@ impl<'a> Completion<'a> {
             region,
             components,
             holes,
+            own: self.own,
             changes: self.changes,
         })
     }
