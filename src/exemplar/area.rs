@@ -11,8 +11,8 @@ use kurbo::BezPath;
 use super::curve::{Named, named};
 use super::error::{ExemplarError, ExemplarFault};
 use super::limits::Limits;
-use super::linework::is_closed;
 use super::outline::flat;
+use super::parts::is_closed;
 use crate::planar::{FillRule, Grid, GridError, Region};
 
 /// The inside of the path with this `id` of the SVG file at `path`, or of its only path when no id is given: in millimetres, y

@@ -27,6 +27,7 @@ mod heights;
 mod limits;
 mod linework;
 mod outline;
+mod parts;
 mod scan;
 mod source;
 mod style;
@@ -49,7 +50,8 @@ pub use self::curve::{path_from_svg, read_path};
 pub use self::error::{ExemplarError, ExemplarFault, Place};
 pub use self::heights::{Heights, HeightsError, read_heights};
 pub use self::limits::Limits;
-pub use self::linework::{Line, Linework};
+pub use self::linework::Linework;
+pub use self::parts::Line;
 
 /// How to read an exemplar.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -54,7 +54,11 @@ pub fn cut(graph: &mut Graph, elements: &mut Elements, area: &Area, least_mm: f6
                 graph.samples.len() - 1
             };
             let ends = [foot(from, a, p, q - p), foot(until, b, s, r - s)];
-            graph.edges.push(Edge { ends, handles: [q - p, r - s], ..edge });
+            let (ends, handles) = match ends[0] < ends[1] {
+                true => (ends, [q - p, r - s]),
+                false => ([ends[1], ends[0]], [r - s, q - p]),
+            };
+            graph.edges.push(Edge { ends, handles, ..edge });
         }
     }
     graph.keep(&stays);
