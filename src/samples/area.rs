@@ -63,16 +63,22 @@ impl Area {
     /// Whether all that contours enclose lies inside, decided exactly on the region's grid.
     pub fn covers_all(&self, contours: &[Vec<DVec2>]) -> bool {
         let grid = self.region.grid();
-        let Some(&first) = contours.iter().flatten().next() else { return true };
-        let (low, high) = contours.iter().flatten().fold((first, first), |(l, h), &p| (l.min(p), h.max(p)));
-        if self.index.in_box(low, high).next().is_none() {
-            return self.contains(first);
+        let points: Vec<DVec2> = contours.iter().flatten().copied().collect();
+        if !self.is_crossed_near(&points) {
+            return points.first().is_none_or(|&p| self.contains(p));
         }
         let snapped = |contour: &Vec<DVec2>| contour.iter().map(|&p| grid.snap(p)).collect();
         let paths: Result<Vec<Vec<GridPoint>>, _> = contours.iter().map(snapped).collect();
         paths.is_ok_and(|paths| {
             Region::fill(grid, &paths, FillRule::Positive).without(&self.region).is_empty()
         })
+    }
+
+    /// Whether any of the border is in the box of points.
+    pub fn is_crossed_near(&self, points: &[DVec2]) -> bool {
+        let Some(&first) = points.first() else { return false };
+        let (low, high) = points.iter().fold((first, first), |(low, high), &p| (low.min(p), high.max(p)));
+        self.index.in_box(low, high).next().is_some()
     }
 
     /// Where a straight line crosses the border, as parts of its length, in no particular order. Rounding may miss one through a corner.

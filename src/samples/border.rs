@@ -98,9 +98,12 @@ fn drop_scraps(graph: &mut Graph, area: &Area, least_mm: f64) {
 
 /// The stretches of a cubic that are inside of the area, by their parameters. Where chords cross the border says only where to look: what is
 /// inside is decided between one crossing and the next, and the places where it changes are found between these.
-fn stretches(cubic: &Cubic, area: &Area) -> Vec<[f64; 2]> {
+pub fn stretches(cubic: &Cubic, area: &Area) -> Vec<[f64; 2]> {
     let is_inside = |t: f64| area.contains(point_at(cubic, t));
     let mut looks = vec![0.0, 1.0];
+    if !area.is_crossed_near(cubic) {
+        return if is_inside(0.5) { vec![[0.0, 1.0]] } else { Vec::new() };
+    }
     for i in 0..CHORDS {
         let [from, to] = [i, i + 1].map(|i| point_at(cubic, i as f64 / CHORDS as f64));
         looks.extend(area.crossings(from, to).map(|part| (i as f64 + part) / CHORDS as f64));

@@ -69,6 +69,9 @@ pub(super) fn check(region: &Region, wanted: Counts, options: &BridgeOptions) ->
     if region.is_empty() {
         return impossible("there is no ink");
     }
+    if options.within.is_some_and(|within| within.grid() != region.grid()) {
+        return impossible("where struts may be is on another grid");
+    }
     if wanted.components == 0 {
         return impossible("bridges take no component away");
     }

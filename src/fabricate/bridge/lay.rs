@@ -9,7 +9,7 @@ use super::fence::Fence;
 use super::ground::{Ground, nearest_step};
 use super::links::{Link, links};
 use super::place::{Place, Prober};
-use super::trial::{Asked, Effort, GOOD_GRADE, Purpose, REQUIRED, Site, Verdict};
+use super::trial::{Asked, Effort, Purpose, REQUIRED, Site, Verdict};
 use super::{Bridge, BridgeError, BridgeKind, BridgeOptions, Bridged, Counts};
 use crate::planar::{EdgeIndex, GridPoint, Region, Sets};
 
@@ -42,6 +42,8 @@ const GRADE_WORTH: f64 = 0.5;
 const REQUIRED_WORTH: f64 = 10.0;
 /// Loops are looked for within so many widths first, and then within twice as many, and so on.
 const FIRST_REACH: f64 = 4.0;
+/// The grade that a loop must have while there may be a better place elsewhere.
+const GOOD_GRADE: usize = 1;
 /// After so many places in a row that would not do, there is none: more would only take longer to say so.
 const MOST_FAILURES: usize = 400;
 /// The most that one bridge changes the count by.

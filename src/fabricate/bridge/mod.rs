@@ -10,7 +10,7 @@
 //! Ink and gaps are dual, so there is one search for struts and slits ([`ground`]). Distances between contours
 //! are true ones ([`links`]); which place along two contours is taken is a matter of length, squareness and hold
 //! ([`place`]); every bridge is tried out in a window before it is laid, exactly and at the tolerance of a
-//! machine ([`trial`]), and cut to where struts may be ([`fence`]); the region with all of them is counted at the end. The work of trying is limited, so that
+//! machine ([`trial`]), and is laid only where struts may be ([`fence`]); the region with all of them is counted at the end. The work of trying is limited, so that
 //! a refusal takes seconds too.
 //!
 //! Excluded: filling holes and dropping islands, which changes the drawing instead of holding it together.

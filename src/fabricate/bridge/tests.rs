@@ -316,7 +316,7 @@ fn without_effort_left_the_search_is_given_up_and_says_so() {
 
 #[test]
 fn struts_stay_where_they_may_be() {
-    // Two bars, and between them a slit that only lets pass what is right of x = 30, and there no more than up to y = 12.
+    // Two bars, and between them a slit that only lets pass what is right of x = 30, or only a part of a strut.
     let bars = region(&[rectangle(2.0, 2.0, 40.0, 4.0), rectangle(2.0, 9.0, 40.0, 4.0)]);
     let ends_at = |x: f64| region(&[rectangle(0.0, 0.0, 50.0, 14.0), rectangle(0.0, 7.0, x, 1.0)]);
     let laid = |domain: &Region| {
@@ -326,9 +326,10 @@ fn struts_stay_where_they_may_be() {
     let joined = laid(&domain).unwrap();
     assert!(joined.bridges[0].from_mm[0] > 30.0, "{:?}", joined.bridges);
     assert!(joined.region.without(&domain).is_empty());
-    // Where there is room for a part of its width only, that has to hold.
-    let narrow = ends_at(41.2);
-    let joined = laid(&narrow).unwrap();
-    assert!(joined.region.without(&narrow).is_empty());
-    assert!(matches!(laid(&ends_at(50.0)), Err(BridgeError::NoPlace { .. })));
+    // No room for all of its width.
+    for x in [41.2, 50.0] {
+        assert!(matches!(laid(&ends_at(x)), Err(BridgeError::NoPlace { .. })), "{x}");
+    }
+    let coarser = Region::fill(Grid::for_extent(3000.0).unwrap(), &[], FillRule::Positive);
+    assert!(matches!(laid(&coarser), Err(BridgeError::Impossible { .. })));
 }

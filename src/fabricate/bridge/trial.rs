@@ -22,8 +22,6 @@ use crate::planar::{Contour, FillRule, Grid, GridPoint, Part, Region};
 
 /// Erosions that a good bridge withstands, as parts of its width, the best first; then only what is required.
 const GRADES: [f64; 3] = [0.35, 0.2, 0.08];
-/// The grade that a bridge must have where there may be a better place elsewhere.
-pub(super) const GOOD_GRADE: usize = 1;
 /// The grade of a bridge that withstands what is required and no more; one grade more and it does not.
 pub(super) const REQUIRED: usize = GRADES.len();
 /// What every bridge withstands, in chord errors: two of half of it meet in a fitted curve.
@@ -130,8 +128,6 @@ struct Laid {
     path: Vec<GridPoint>,
     low: DVec2,
     high: DVec2,
-    /// Whether there is less of it than its corners say.
-    is_cut: bool,
 }
 
 impl Laid {
@@ -139,7 +135,7 @@ impl Laid {
         let corners = || path.iter().map(|&p| grid.to_mm(p));
         let low = corners().reduce(DVec2::min).unwrap_or_default();
         let high = corners().reduce(DVec2::max).unwrap_or_default();
-        Self { path, low, high, is_cut: false }
+        Self { path, low, high }
     }
 }
 
@@ -181,7 +177,7 @@ impl<'a> Site<'a> {
     /// Lays a bridge and fills its pockets; how many outlines there are then.
     pub(super) fn lay(&mut self, corners: &[DVec2; 4], pockets: &[Vec<GridPoint>]) -> usize {
         let grid = self.ground.grid;
-        self.laid.extend(self.on_grid(corners));
+        self.laid.push(self.on_grid(corners));
         self.laid.extend(pockets.iter().map(|path| Laid::new(grid, path.clone())));
         self.laid.len()
     }
@@ -198,7 +194,10 @@ impl<'a> Site<'a> {
 
     /// All that the verdict on a bridge depends on, as the contours are always the same; `None` where no bridge may be.
     pub(super) fn asked(&self, corners: &[DVec2; 4], purpose: Purpose) -> Option<Asked> {
-        let bridge = self.on_grid(corners)?;
+        let bridge = self.on_grid(corners);
+        if self.fence.is_some_and(|fence| !fence.holds(&bridge.path)) {
+            return None;
+        }
         let [low, high] = self.window_around(&bridge);
         Some(Asked { beside: self.laid_in(low, high).cloned().collect(), corners: bridge.path, purpose })
     }
@@ -216,7 +215,7 @@ impl<'a> Site<'a> {
 
     /// Tries a bridge; `None` when it does not serve its purpose.
     pub(super) fn try_out(&self, corners: &[DVec2; 4], purpose: Purpose) -> Option<Verdict> {
-        let bridge = self.on_grid(corners)?;
+        let bridge = self.on_grid(corners);
         let [low, high] = self.window_around(&bridge);
         let mut paths = self.window(low, high, |rim| &self.ground.rims[rim].steps);
         let before = paths.len();
@@ -254,8 +253,6 @@ impl<'a> Site<'a> {
         let graded = GRADES.into_iter().chain([0.0]).map(|part| {
             [self.erosion_mm, self.dilation_mm].map(|mm| mm.max(part * self.width_mm).max(self.least_mm))
         });
-        // Of what was cut off enough has to be left, whatever the machine needs.
-        let worst = if bridge.is_cut { GOOD_GRADE } else { usize::MAX };
         let levels: Vec<[f64; 2]> = graded.chain([[self.least_mm; 2]]).collect();
         let thin = thin_pair(&self.thin[0]);
         // What withstands more need not withstand less: walls that are gone with more hide what the bridge does to them.
@@ -288,7 +285,7 @@ impl<'a> Site<'a> {
             let ink = |paths: &[Vec<GridPoint>]| euler(&self.inverse(paths, low, high));
             ink(&paths) - ink(&paths[..before]) == change.holes - change.components
         };
-        (is_true && grade <= worst).then_some(Verdict { grade, changes, pockets, area_mm2 })
+        is_true.then_some(Verdict { grade, changes, pockets, area_mm2 })
     }
 
     /// The smallest holes that are new, if they are small.
@@ -317,14 +314,9 @@ impl<'a> Site<'a> {
         region.offset(radius_mm, ARC * radius_mm.abs())
     }
 
-    /// The outline of a bridge, cut to where it may be.
-    fn on_grid(&self, corners: &[DVec2; 4]) -> Option<Laid> {
+    fn on_grid(&self, corners: &[DVec2; 4]) -> Laid {
         let grid = self.ground.grid;
-        let path: Vec<GridPoint> = corners.iter().map(|&p| nearest_step(grid, p)).collect();
-        let Some(fence) = self.fence else { return Some(Laid::new(grid, path)) };
-        let is_cut = !fence.covers(&path);
-        let inside = if is_cut { fence.inside(&path)? } else { path };
-        Some(Laid { is_cut, ..Laid::new(grid, inside) })
+        Laid::new(grid, corners.iter().map(|&p| nearest_step(grid, p)).collect())
     }
 
     /// What is not material in the window.

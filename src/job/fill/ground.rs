@@ -16,7 +16,7 @@ use crate::job::band::read_curve;
 use crate::job::error::JobError;
 use crate::job::part::MARGIN_MM;
 use crate::job::report::InputReport;
-use crate::planar::{Chords, FillRule, Grid, GridError, GridPoint, Region, chords};
+use crate::planar::{Chords, EdgeIndex, FillRule, Grid, GridError, GridPoint, Part, Region, chords};
 use crate::samples::{self, Area, Curve, Drawing, Element};
 
 /// The part of the chord error for each: flattening curves before they are mapped, and mapping them.
@@ -273,19 +273,25 @@ impl Ground {
         Ok((one, grid.mm(at)))
     }
 
-    /// Where bridges may be: in the domain, and where what is kept reaches beyond it, all around; never in the domain's holes.
-    pub(super) fn for_bridges(&self, kept: &Region) -> Region {
+    /// Where bridges may be: in the domain, and between it and what is kept beside it; never in the domain's holes.
+    pub(super) fn for_bridges(&self, kept: &Region, pen_mm: f64) -> Region {
         let (domain, grid) = (&self.domain, self.grid());
-        if kept.without(domain).is_empty() {
+        let beside = kept.without(domain);
+        if beside.area_mm2() < ROUNDING_MM2 {
             return domain.clone();
         }
+        let index = EdgeIndex::new(domain);
+        let way_mm = |part: &Part| {
+            let points = part.exterior().points().iter().map(|&p| grid.to_mm(p));
+            let ways = points.map(|p| index.nearest(p).map_or(0.0, |edge| edge.nearest(p).distance(p)));
+            ways.fold(f64::INFINITY, f64::min)
+        };
+        let reach_mm = beside.parts().iter().map(way_mm).fold(0.0, f64::max) + ROOM_PENS * pen_mm;
+        let around = beside.offset(reach_mm, 0.1 * reach_mm);
         let outlines: Vec<Vec<GridPoint>> =
             domain.parts().iter().map(|part| part.exterior().points().to_vec()).collect();
         let holes = Region::fill(grid, &outlines, FillRule::Positive).without(domain);
-        let page =
-            [DVec2::ZERO, DVec2::new(self.page_mm.x, 0.0), self.page_mm, DVec2::new(0.0, self.page_mm.y)];
-        let page = page.map(|p| GridPoint::new(grid.steps(p.x), grid.steps(p.y))).to_vec();
-        Region::union(grid, [&Region::fill(grid, &[page], FillRule::Positive).without(&holes), kept])
+        Region::union(grid, [&Region::union(grid, [domain, &around]).without(&holes), kept])
     }
 
     /// The ink that is inside of the domain.
@@ -293,6 +299,11 @@ impl Ground {
         ink.within(&self.domain)
     }
 }
+
+/// What outlines that cross lose by rounding, at the most.
+pub(super) const ROUNDING_MM2: f64 = 1e-4;
+/// Bridges to what is kept beside the domain may be so many pens wide around it.
+const ROOM_PENS: f64 = 3.0;
 
 /// A drawing elsewhere.
 pub(super) fn moved(drawing: &Drawing, by: DVec2) -> Drawing {

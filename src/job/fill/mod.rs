@@ -23,7 +23,7 @@ use glam::DVec2;
 use self::builder::refused;
 use self::census::{density_inside, density_of};
 use self::engine::Pattern;
-use self::ground::{Ground, grid_error, moved};
+use self::ground::{Ground, ROUNDING_MM2, grid_error, moved};
 use self::sheet::Sheet;
 use super::bridging::{self, BridgesReport};
 use super::error::JobError;
@@ -157,12 +157,13 @@ impl Fill {
         };
         let is_closed = sheet.as_ref().is_some_and(Sheet::is_closed);
         if !is_closed {
-            fill.bridge(&ground.for_bridges(&kept_ink), lacking.clone(), &mut clock)?;
+            fill.bridge(&ground.for_bridges(&kept_ink, pen_mm), lacking.clone(), &mut clock)?;
             fill.keep(&kept_ink)?;
         }
         if let Some(mended) = options.making.enforced(&fill.region, &mut clock)? {
             fill.notes.push(mended.report.note());
             (fill.region, fill.enforced) = (mended.region, Some(mended.report));
+            fill.keep_in(&ground.for_bridges(&kept_ink, pen_mm), !is_closed)?;
             let lost_mm2 = kept_ink.without(&fill.region).area_mm2();
             if lost_mm2 > ROUNDING_MM2 {
                 return Err(refused(
@@ -234,6 +235,28 @@ impl Fill {
         self.notes.push(report.note(Counts::of(&self.region)));
         self.bridges = Some(report);
         Ok(())
+    }
+
+    /// Takes away what was thickened beyond where ink may be, and refuses where that changes the counts. Whether all is as wide as asked for is
+    /// measured on the files.
+    fn keep_in(&mut self, within: &Region, is_counted: bool) -> Result<(), JobError> {
+        let beyond_mm2 = self.region.without(within).area_mm2();
+        if !is_counted || beyond_mm2 < ROUNDING_MM2 {
+            return Ok(());
+        }
+        let before = Counts::of(&self.region);
+        self.region = self.region.within(within);
+        let after = Counts::of(&self.region);
+        if after == before {
+            return Ok(());
+        }
+        Err(refused(
+            "--enforce",
+            format!(
+                "{beyond_mm2:.3} mm2 of what was thickened lies outside of the domain, and without it {after} are left of {before}"
+            ),
+            "give a --frame, which keeps ink away from the border, a smaller --min-feature, or a domain with more room",
+        ))
     }
 
     /// Draws what is kept again where a bridge or a slit changed it.
@@ -379,6 +402,3 @@ fn laid(
     let (ink, cut_mm) = ground.opened(&ink)?;
     Ok((drawing, ink, cut_mm))
 }
-
-/// What outlines that cross lose by rounding, at the most.
-const ROUNDING_MM2: f64 = 1e-4;

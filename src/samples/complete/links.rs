@@ -23,6 +23,8 @@ const FAR_HOPS: usize = 6;
 const NEAR_HOPS: usize = 2;
 /// Components that a place is linked to at first; with each doubling of the reach to twice as many.
 const PER_PLACE: usize = 4;
+/// A set of components with more edges than this has a tree of its own of all that is outside of it.
+const LARGE_SET: usize = 200;
 /// Candidates within a component from one place.
 const PER_PORT: usize = 3;
 /// A link that ends at an edge ends at its sample if that is nearer than this many pens: with less, a sliver stays between it and an end or
@@ -122,12 +124,12 @@ impl Planner<'_, '_> {
         });
         let mut candidates: Vec<_> = voted.collect();
         // Strokes that enclose much, then those that only cut a corner.
-        let reaches = [FAR_HOPS, NEAR_HOPS]
-            .into_iter()
-            .flat_map(|hops| (0..4).map(move |doubling| (hops, 3 << doubling)));
-        for (hops, spacings) in reaches {
+        let stems = [FAR_HOPS, NEAR_HOPS].map(|hops| (hops, scene.around_contours(hops)));
+        let reaches =
+            stems.iter().flat_map(|(hops, stems)| (0..4).map(move |doubling| (*hops, stems, 3 << doubling)));
+        for (hops, stems, spacings) in reaches {
             let reach_mm = scene.spacing_mm * f64::from(spacings);
-            let links = self.within_parts(reach_mm, hops).into_iter();
+            let links = self.within_parts(reach_mm, hops, stems).into_iter();
             candidates.extend(links.map(|link| (ChangeKind::Enclose, link, None)));
             for (kind, link, confidence) in candidates.drain(..) {
                 if steps.len() == needed {
@@ -201,16 +203,19 @@ impl Planner<'_, '_> {
         let mut found: BTreeMap<[usize; 2], Vec<(f64, Link)>> = BTreeMap::new();
         let largest = self.largest_set(sets);
         let set_of: Vec<usize> = (0..self.scene.region.components()).map(|part| sets.find(part)).collect();
-        // From within the largest set nearly all that is near is its own.
-        let outside =
-            self.scene.lines.only(|owner| self.scene.part(owner).is_some_and(|part| set_of[part] != largest));
+        // From within a large set nearly all that is near is its own.
+        let sizes = self.sizes(&set_of);
+        let outside_of = |set: usize| {
+            self.scene.lines.only(|owner| self.scene.part(owner).is_some_and(|part| set_of[part] != set))
+        };
+        let large = (0..sizes.len()).filter(|&set| sizes[set] > LARGE_SET || set == largest);
+        let outside: BTreeMap<usize, Lines> = large.map(|set| (set, outside_of(set))).collect();
         for (part, port) in self.ports() {
-            let is_in_largest = set_of[part] == largest;
-            if is_in_largest && port.onward.is_none() {
+            if set_of[part] == largest && port.onward.is_none() {
                 // Links to the largest are found from the others.
                 continue;
             }
-            let lines = if is_in_largest { &outside } else { &self.scene.lines };
+            let lines = outside.get(&set_of[part]).unwrap_or(&self.scene.lines);
             let mut seen: Vec<usize> = Vec::new();
             for (_, line) in lines.nearest_first(port.at).take_while(|&(way_mm, _)| way_mm <= reach_mm) {
                 let Some(other) = self.scene.part(line.owner) else { continue };
@@ -248,7 +253,7 @@ impl Planner<'_, '_> {
             to = self.moved(to, from.at);
             let link = Link::smooth(self.scene, &from, &to);
             let cost = link.cost(self.scene);
-            if cost < best.0 {
+            if cost < best.0 && link.is_inside(self.scene) {
                 best = (cost, link);
             }
         }
@@ -262,19 +267,17 @@ impl Planner<'_, '_> {
         }
         let own = self.scene.own(port.foot, port.owner);
         let p = port.at + self.scene.work.area.way(port.at, p);
-        let near = self.scene.lines.near(p, port.at.distance(p));
-        near.into_iter()
-            .find(|(_, line)| own.contains(&line.owner))
-            .map_or(port, |(_, line)| self.landing(line, p))
+        let found = self.scene.lines.nearest_first(p).find(|(_, line)| own.contains(&line.owner));
+        found.map_or(port, |(_, line)| self.landing(line, p))
     }
 
-    /// Links that would enclose a hole with more than `hops` edges around it, the cheapest first.
-    fn within_parts(&self, reach_mm: f64, hops: usize) -> Vec<Link> {
+    /// Links that would enclose a hole with more than `hops` edges around it, the cheapest first. `stems` are the edges that hang on to contours by
+    /// as many.
+    fn within_parts(&self, reach_mm: f64, hops: usize, stems: &[Vec<usize>]) -> Vec<Link> {
         let mut links: Vec<(f64, Link)> = Vec::new();
-        // What is near an element's outline is mostly the stem that it hangs on.
-        let stems = self.scene.around_contours(hops);
         for (part, port) in self.ports() {
             let mut own = self.scene.own_within(port.foot, port.owner, hops);
+            // What is near an element's outline is mostly the stem that it hangs on.
             if let Some(Owner::Contour(contour)) = port.owner {
                 own.extend(stems[contour].iter().copied().map(Owner::Edge));
             }
@@ -303,18 +306,25 @@ impl Planner<'_, '_> {
 
     /// The set of parts that has the frame, or the most edges.
     fn largest_set(&self, sets: &mut Sets) -> usize {
-        let mut counts = vec![0; self.scene.region.components()];
-        for edge in self.scene.work.present() {
-            if let Some(part) = self.scene.part(Owner::Edge(edge)) {
-                counts[sets.find(part)] += 1;
-            }
-        }
         for stroke in 0..self.scene.work.frame.len() {
             if let Some(part) = self.scene.part(Owner::Frame(stroke)) {
                 return sets.find(part);
             }
         }
-        (1..counts.len()).fold(0, |best, i| if counts[i] > counts[best] { i } else { best })
+        let set_of: Vec<usize> = (0..self.scene.region.components()).map(|part| sets.find(part)).collect();
+        let sizes = self.sizes(&set_of);
+        (1..sizes.len()).fold(0, |best, i| if sizes[i] > sizes[best] { i } else { best })
+    }
+
+    /// How many edges each set of parts has.
+    fn sizes(&self, set_of: &[usize]) -> Vec<usize> {
+        let mut sizes = vec![0; set_of.len()];
+        for edge in self.scene.work.present() {
+            if let Some(part) = self.scene.part(Owner::Edge(edge)) {
+                sizes[set_of[part]] += 1;
+            }
+        }
+        sizes
     }
 
     /// All places from which links may go, with their parts: samples, middles of long edges, points of elements' outlines and of the frame.

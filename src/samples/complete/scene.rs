@@ -118,14 +118,20 @@ impl<'a> Scene<'a> {
     /// For each contour of an element, the edges that hang on to it by so many samples.
     pub fn around_contours(&self, hops: usize) -> Vec<Vec<usize>> {
         let contours = self.work.elements.iter().flat_map(|element| &element.contours);
-        let touching = |&p: &DVec2| self.lines.near(p, 0.0).into_iter().map(|(_, line)| line.owner);
         let ends = |owner| match owner {
             Owner::Edge(edge) => self.work.edges.get(edge).map_or(Vec::new(), |edge| edge.ends.to_vec()),
             _ => Vec::new(),
         };
         contours
             .map(|contour| {
-                let mut samples: Vec<usize> = contour.iter().flat_map(touching).flat_map(ends).collect();
+                let sides = contour.iter().zip(contour.iter().cycle().skip(1));
+                // Nearer to one another than a pen is wide, so that none passes between them.
+                let places = sides.flat_map(|(&a, &b)| {
+                    let parts = (2.0 * a.distance(b) / self.work.pen_mm).ceil().clamp(1.0, 1e3) as u32;
+                    (0..parts).map(move |i| a.lerp(b, f64::from(i) / f64::from(parts)))
+                });
+                let touching = places.flat_map(|p| self.lines.near(p, 0.0)).map(|(_, line)| line.owner);
+                let mut samples: Vec<usize> = touching.flat_map(ends).collect();
                 samples.sort_unstable();
                 samples.dedup();
                 self.around(samples, hops)
