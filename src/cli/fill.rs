@@ -312,9 +312,9 @@ fn say_fill(report: &FillReport) {
         kinds.chunk_by(|a, b| a == b).map(|same| format!("{} {}", same.len(), same[0])).collect();
     if !counted.is_empty() {
         say!("{} change(s): {}; --report lists their positions", kinds.len(), counted.join(", "));
-        if report.wanted_components.is_some() || report.wanted_holes.is_some() {
-            say!("by itself the pattern has {}", report.own);
-        }
+    }
+    if report.wanted_components.is_some() || report.wanted_holes.is_some() {
+        say!("by itself, tidied, the pattern has {}", report.own);
     }
     say_bridges(report.bridges.as_ref(), BRIDGES_SHOWN);
     let widths = [("ink", &report.narrow_places.ink), ("gap", &report.narrow_places.gaps)];

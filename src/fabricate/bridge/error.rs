@@ -26,7 +26,7 @@ pub enum BridgeError {
         why: &'static str,
     },
     /// There is no place left for a bridge.
-    #[error("{done} of {needed} {}; there is no place for another {} {width_mm} mm wide; a narrower one may find a place", what(*kind), if kind.is_strut() { "strut" } else { "slit" })]
+    #[error("{done} of {needed} {}; there is no place for another {} {width_mm:.3} mm wide; a narrower one may find a place", what(*kind), if kind.is_strut() { "strut" } else { "slit" })]
     NoPlace {
         /// What the bridge was for.
         kind: BridgeKind,
@@ -38,7 +38,7 @@ pub enum BridgeError {
         width_mm: f64,
     },
     /// The search was given up, as hardly any place will do.
-    #[error("{done} of {needed} {}; the search for places of {}s {width_mm} mm wide was given up, as nearly all that were tried would not hold; change the counts by less, or try another width or a larger chord error", what(*kind), if kind.is_strut() { "strut" } else { "slit" })]
+    #[error("{done} of {needed} {}; the search for places of {}s {width_mm:.3} mm wide was given up, as nearly all that were tried would not hold; change the counts by less, or try another width or a larger chord error", what(*kind), if kind.is_strut() { "strut" } else { "slit" })]
     TooMuch {
         /// What the bridge was for.
         kind: BridgeKind,

@@ -129,10 +129,10 @@ fn dotted(curve: &Curve, step_mm: f64) -> Vec<DVec2> {
     dots
 }
 
-/// Shapes larger than a neighbourhood of this many radii are not learnt from.
+/// A neighbourhood is so many radii across.
 const NEIGHBOURHOOD_RADII: f64 = 2.0;
 
-/// A note on shapes that no neighbourhood holds: they are one sample each, which sees nothing of what is around them.
+/// A note on shapes that no neighbourhood holds: their samples see little of what is around them.
 pub(super) fn oversize(exemplar: &Drawing, levels: &[Level]) -> Option<String> {
     let radius_mm = levels.iter().map(|level| level.radius_mm).fold(0.0, f64::max);
     let size = |element: &Element| {
@@ -144,9 +144,10 @@ pub(super) fn oversize(exemplar: &Drawing, levels: &[Level]) -> Option<String> {
         sizes.filter(|size| size.max_element() > NEIGHBOURHOOD_RADII * radius_mm).collect();
     let largest = large.iter().copied().max_by(|a, b| a.max_element().total_cmp(&b.max_element()))?;
     Some(format!(
-        "{WARNING}{} of {} shape(s) of the exemplar do not fit into a neighbourhood of {radius_mm:.1} mm, the largest is {:.1} mm by {:.1} mm: their surroundings are not seen, and they may come to lie over one another; draw such ornament as strokes, or give larger --radii",
+        "{WARNING}{} of {} shape(s) of the exemplar do not fit into a neighbourhood of {:.1} mm across, the largest is {:.1} mm by {:.1} mm: little of their surroundings is seen, and they may come to lie over one another; draw such ornament as strokes, or give larger --radii",
         large.len(),
         exemplar.elements.len(),
+        NEIGHBOURHOOD_RADII * radius_mm,
         largest.x,
         largest.y
     ))

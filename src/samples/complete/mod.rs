@@ -61,7 +61,8 @@ pub struct CompleteOptions {
     pub least_vote: f64,
     /// Ends nearer than this that point at each other are joined; `None` for twice the spacing.
     pub reach_mm: Option<f64>,
-    /// How many ends there should be in the open, as in the exemplar: no more are joined or trimmed when there are no more than that.
+    /// How many ends there should be in the open and farther than a pen from the border, as in the exemplar: no more are joined or trimmed when
+    /// there are no more than that.
     pub ends_wanted: Option<usize>,
 }
 
@@ -92,7 +93,7 @@ pub enum ChangeKind {
     Bridge,
     /// A stroke that closes a hole.
     Enclose,
-    /// A dab on a hole that is too small to be one.
+    /// A dab on a hole that is too small to be one, or on a slit along the frame.
     Fill,
     /// Edges taken away to open a hole.
     Open,
