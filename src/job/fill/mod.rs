@@ -155,15 +155,17 @@ impl Fill {
             region,
             drawing,
         };
+        // Of a closed strip the sides are one place, of which its drawing knows nothing.
         let is_closed = sheet.as_ref().is_some_and(Sheet::is_closed);
-        if !is_closed {
-            fill.bridge(&ground.for_bridges(&kept_ink, pen_mm), lacking.clone(), &mut clock)?;
+        let within = (!is_closed).then(|| ground.for_bridges(&kept_ink, pen_mm));
+        if let Some(within) = &within {
+            fill.bridge(within, lacking.clone(), &mut clock)?;
             fill.keep(&kept_ink)?;
         }
         if let Some(mended) = options.making.enforced(&fill.region, &mut clock)? {
             fill.notes.push(mended.report.note());
             (fill.region, fill.enforced) = (mended.region, Some(mended.report));
-            fill.keep_in(&ground.for_bridges(&kept_ink, pen_mm), !is_closed)?;
+            within.iter().try_for_each(|within| fill.keep_in(within))?;
             let lost_mm2 = kept_ink.without(&fill.region).area_mm2();
             if lost_mm2 > ROUNDING_MM2 {
                 return Err(refused(
@@ -239,9 +241,9 @@ impl Fill {
 
     /// Takes away what was thickened beyond where ink may be, and refuses where that changes the counts. Whether all is as wide as asked for is
     /// measured on the files.
-    fn keep_in(&mut self, within: &Region, is_counted: bool) -> Result<(), JobError> {
+    fn keep_in(&mut self, within: &Region) -> Result<(), JobError> {
         let beyond_mm2 = self.region.without(within).area_mm2();
-        if !is_counted || beyond_mm2 < ROUNDING_MM2 {
+        if beyond_mm2 < ROUNDING_MM2 {
             return Ok(());
         }
         let before = Counts::of(&self.region);

@@ -33,7 +33,8 @@ const SNAP_PENS: f64 = 1.5;
 const PASSING_SNAP_PENS: f64 = 0.3;
 /// How often the ends of a link move to where the other one is nearest.
 const MOVES: usize = 3;
-/// How often the reach is doubled, from three spacings on.
+/// How many spacings a link reaches at first, and how often that is doubled.
+const FIRST_REACH_SPACINGS: f64 = 3.0;
 const DOUBLINGS: u32 = 8;
 
 /// What may be added, and what is banned from being tried again.
@@ -82,9 +83,8 @@ impl Planner<'_, '_> {
                 steps.push(step);
             }
         }
-        let mut reach_mm = 3.0 * scene.spacing_mm;
         for doubling in 0..=DOUBLINGS {
-            for ([p, q], link) in self.between_parts(reach_mm, doubling, &mut sets) {
+            for ([p, q], link) in self.between_parts(doubling, &mut sets) {
                 if steps.len() == needed {
                     return steps;
                 }
@@ -106,7 +106,6 @@ impl Planner<'_, '_> {
                     }
                 }
             }
-            reach_mm *= 2.0;
         }
         steps
     }
@@ -197,14 +196,19 @@ impl Planner<'_, '_> {
         (!(self.is_banned)(&step)).then_some(step)
     }
 
-    /// Links within a reach between parts that are not in one set yet, the cheapest first. With each doubling of the reach more are given.
-    fn between_parts(&self, reach_mm: f64, doubling: u32, sets: &mut Sets) -> Vec<([usize; 2], Link)> {
+    /// Links within a reach that was doubled so often, between parts that are not in one set yet, the cheapest first. With each doubling more
+    /// are given.
+    fn between_parts(&self, doubling: u32, sets: &mut Sets) -> Vec<([usize; 2], Link)> {
+        let reach_mm = FIRST_REACH_SPACINGS * self.scene.spacing_mm * f64::from(1 << doubling);
         let [most, per_pair] = [PER_PLACE, PER_PAIR].map(|count| count << doubling);
         let mut found: BTreeMap<[usize; 2], Vec<(f64, Link)>> = BTreeMap::new();
-        let largest = self.largest_set(sets);
         let set_of: Vec<usize> = (0..self.scene.region.components()).map(|part| sets.find(part)).collect();
-        // From within a large set nearly all that is near is its own.
         let sizes = self.sizes(&set_of);
+        let largest = self.largest_set(&set_of, &sizes);
+        if set_of.iter().all(|&set| set == largest) {
+            return Vec::new();
+        }
+        // From within a large set nearly all that is near is its own.
         let outside_of = |set: usize| {
             self.scene.lines.only(|owner| self.scene.part(owner).is_some_and(|part| set_of[part] != set))
         };
@@ -305,14 +309,12 @@ impl Planner<'_, '_> {
     }
 
     /// The set of parts that has the frame, or the most edges.
-    fn largest_set(&self, sets: &mut Sets) -> usize {
+    fn largest_set(&self, set_of: &[usize], sizes: &[usize]) -> usize {
         for stroke in 0..self.scene.work.frame.len() {
             if let Some(part) = self.scene.part(Owner::Frame(stroke)) {
-                return sets.find(part);
+                return set_of[part];
             }
         }
-        let set_of: Vec<usize> = (0..self.scene.region.components()).map(|part| sets.find(part)).collect();
-        let sizes = self.sizes(&set_of);
         (1..sizes.len()).fold(0, |best, i| if sizes[i] > sizes[best] { i } else { best })
     }
 
