@@ -6,7 +6,8 @@ use kurbo::{Cap, Join, Stroke};
 use super::{Area, Drawing};
 use crate::planar::{self, FillRule, Grid, GridError, GridPoint, Region};
 
-/// The ink of a drawing on `grid`, where strokes have round ends and corners and stay within `chord_mm` of their true outlines.
+/// The ink of a drawing on `grid`, where strokes have round ends and corners. They are nowhere narrower than their pens, and their outlines are
+/// within twice `chord_mm` of the true ones.
 ///
 /// # Errors
 /// [`GridError`] for coordinates that are no numbers or too large.
@@ -87,7 +88,8 @@ impl CountingPlane {
 /// Polygons that cover what is drawn, with the ink on their left.
 fn polygons(drawing: &Drawing, chord_mm: f64) -> Vec<Vec<DVec2>> {
     let strokes = drawing.curves.iter().flat_map(|curve| {
-        let pen = Stroke::new(curve.width_mm).with_caps(Cap::Round).with_join(Join::Round);
+        // Chords of a round outline lie inside of it, and a pen as wide as a machine's least width must not come out narrower.
+        let pen = Stroke::new(curve.width_mm + 2.0 * chord_mm).with_caps(Cap::Round).with_join(Join::Round);
         planar::stroked(&curve.path, &pen, chord_mm, usize::MAX).unwrap_or_default()
     });
     let contours = drawing.elements.iter().flat_map(|element| &element.contours);
@@ -127,6 +129,25 @@ mod tests {
         assert_eq!(counts(&drawing), (2, 2));
         drawing.curves.push(curve("M10 5H20"));
         assert_eq!(counts(&drawing), (1, 2));
+    }
+
+    #[test]
+    fn strokes_are_as_wide_as_their_pen_everywhere() {
+        let curve = Curve { path: BezPath::from_svg("M5 5C30 0 5 30 40 20L20 45").unwrap(), width_mm: 1.0 };
+        let ink = |chord_mm: f64| {
+            let drawing = Drawing { curves: vec![curve.clone()], elements: Vec::new() };
+            inked(&drawing, Grid::for_extent(60.0).unwrap(), chord_mm).unwrap()
+        };
+        let middle: Vec<DVec2> =
+            planar::chords(&curve.path, 1e-6).into_iter().flat_map(|line| line.points).collect();
+        for chord_mm in [0.05, 0.0025] {
+            let outline = planar::EdgeIndex::new(&ink(chord_mm));
+            let half_mm = |p: &DVec2| outline.nearest(*p).unwrap().nearest(*p).distance(*p);
+            let widths = middle.iter().map(half_mm);
+            let (least, most) =
+                widths.fold((f64::MAX, 0.0_f64), |(least, most), w| (least.min(w), most.max(w)));
+            assert!(least >= 0.5 - 1e-5 && most <= 0.5 + 2.0 * chord_mm, "{chord_mm}: {least} {most}");
+        }
     }
 
     #[test]
