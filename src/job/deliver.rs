@@ -17,8 +17,6 @@ use super::report::BandReport;
 use super::small;
 use super::stage::{Clock, Stage};
 
-/// Ink thinner than this is worth a warning, in millimetres: about the width of a laser's cut.
-const HAIRLINE_MM: f64 = 0.1;
 /// What makes all of a band larger.
 const LARGER: &str = "a larger --width";
 
@@ -154,14 +152,8 @@ impl Band {
             }
         });
         report.made.notes.extend_from_slice(&raised.notes);
-        if let Some(narrowest) = min_feature.filter(|n| n.width_mm < HAIRLINE_MM) {
-            report.made.notes.push(format!(
-                "{} only {:.3} mm wide holds the {} together, which hardly any machine makes; a larger --width makes it wider in proportion",
-                if laser.carve { "material" } else { "ink" },
-                narrowest.width_mm,
-                if laser.carve { "plate" } else { "band" },
-            ));
-        }
+        let (what, whole) = if laser.carve { ("material", "plate") } else { ("ink", "band") };
+        report.made.notes.extend(small::hairline(min_feature, what, whole, LARGER));
         let narrowest_mm = found.min_feature.map(|n| n.width_mm);
         let lost = small::warnings(&self.part.region, &self.job.tolerances, outputs, narrowest_mm, LARGER);
         report.made.notes.extend(lost);

@@ -308,6 +308,10 @@ impl Flat<'_> {
         let narrowest_mm = narrow_places.ink.first().map(|n| n.width_mm);
         let mut notes = raised.notes.clone();
         notes.extend(small::warnings(region, tolerances, outputs, narrowest_mm, self.larger));
+        let (material, gap) = if laser.carve { ("material", "cut") } else { ("ink", "gap") };
+        let [ink, gaps] = [&narrow_places.ink, &narrow_places.gaps].map(|places| places.first().copied());
+        notes.extend(small::hairline(ink, material, "part", self.larger));
+        notes.extend(small::hairline(gaps, gap, "part", self.larger));
         notes.extend(blind::notes(&narrow_places, tolerances, !enforce, self.larger));
         Ok(FlatMade {
             pending,

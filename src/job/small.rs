@@ -10,11 +10,14 @@ use super::notes::WARNING;
 use super::output::Output;
 use crate::fabricate::{smaller_than, thin_everywhere};
 use crate::planar::{Region, Tolerances};
+use crate::verify::Narrowest;
 
 /// The nozzle that nearly every printer has.
 const NOZZLE_MM: f64 = 0.4;
 /// A tenth of a millimetre square: nothing that a nozzle or a beam makes is smaller.
 const SPECK_MM2: f64 = 0.01;
+/// Hardly any machine makes ink or a gap narrower than this.
+const HAIRLINE_MM: f64 = 0.1;
 
 /// Warnings of parts of `region` that are lost when `outputs` are made, if no minimum feature was asked for. `narrowest_mm`
 /// is its narrowest ink, so that what is wide needs no search, and `larger` what would make all of it larger.
@@ -42,6 +45,20 @@ pub(super) fn warnings(
     warnings
 }
 
+/// A warning where the narrowest `what` of the `whole` is a hair, so that counts hang by it.
+pub(super) fn hairline(
+    narrowest: Option<Narrowest>,
+    what: &str,
+    whole: &str,
+    larger: &str,
+) -> Option<String> {
+    let Narrowest { width_mm, position_mm } = narrowest.filter(|n| n.width_mm < HAIRLINE_MM)?;
+    Some(format!(
+        "{WARNING}{what} of the {whole} is only {width_mm:.3} mm wide at ({:.2}, {:.2}) mm, and hardly any machine makes that; {larger} makes it wider in proportion, --min-feature and --min-gap with --enforce as wide as the machine needs",
+        position_mm.x, position_mm.y
+    ))
+}
+
 fn of_thin(lost: usize, of: usize, first: DVec2, larger: &str) -> String {
     let rest = format!("; --process fdm-0.4 --enforce makes them as wide, {larger} all of the ink");
     let place = format!("({:.1}, {:.1}) mm", first.x, first.y);
@@ -59,6 +76,20 @@ fn of_thin(lost: usize, of: usize, first: DVec2, larger: &str) -> String {
 mod tests {
     use super::*;
     use crate::planar::{FillRule, Grid, boxes};
+
+    #[test]
+    fn hairs_are_told_with_their_place() {
+        let tell = |width_mm: f64| {
+            let narrowest = Narrowest { width_mm, position_mm: DVec2::new(7.0, 2.0) };
+            hairline(Some(narrowest), "ink", "part", "a larger exemplar")
+        };
+        let told = tell(0.004).unwrap();
+        assert!(
+            told.starts_with("warning: ink of the part is only 0.004 mm wide at (7.00, 2.00) mm"),
+            "{told}"
+        );
+        assert!(tell(0.1).is_none() && hairline(None, "ink", "part", "").is_none());
+    }
 
     #[test]
     fn what_will_be_lost_is_told_for_what_is_made() {
