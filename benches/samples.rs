@@ -44,7 +44,8 @@ fn main() {
 /// The median time of a square of `side_mm`, and what was made in it.
 fn median(exemplar: &Drawing, side_mm: f64) -> (f64, Synthesis) {
     let area = square(side_mm);
-    let options = Options { levels: default_levels(exemplar, 3), seed: 1, ..Options::default() };
+    let options =
+        Options { levels: default_levels(exemplar, 3, f64::INFINITY), seed: 1, ..Options::default() };
     let mut runs: Vec<(f64, Synthesis)> = (0..RUNS)
         .map(|_| {
             let began = Instant::now();

@@ -72,6 +72,19 @@ fn a_rectangle_has_what_is_asked_for() {
 }
 
 #[test]
+fn a_narrow_strip_has_smaller_neighbourhoods() {
+    let room = room();
+    for (domain, least_mm) in [("rect:90x60mm", 8.0), ("rect:90x7mm", 0.0)] {
+        let (found, report) = fill(&room, &format!("twigs.svg --domain {domain} --components 1..99"));
+        let radii =
+            report["levels"].as_array().unwrap().iter().map(|level| level["radius_mm"].as_f64().unwrap());
+        let largest_mm = radii.fold(0.0, f64::max);
+        assert!(largest_mm > least_mm && found.components > 0, "{domain}: {largest_mm}");
+        assert!(largest_mm <= if least_mm == 0.0 { 6.0 } else { 60.0 }, "{domain}: {largest_mm}");
+    }
+}
+
+#[test]
 fn a_frame_is_part_of_the_pattern() {
     let room = room();
     let (found, _) = fill(&room, "twigs.svg --domain rect:70x50mm --components 1 --frame 1mm -o out.stl");
@@ -368,7 +381,14 @@ fn what_cannot_be_filled() {
     refuses("--domain frame.svg#open", 2, &["<path id=\"open\"> on line 2 is open", "z at the end"]);
     refuses("--domain frame.svg", 2, &["holds 2 paths", "#id", "frame, open"]);
     refuses("--domain rect:1x40mm --stroke 1.5mm", 2, &["nowhere wider than the pen of 1.50 mm", "--stroke"]);
-    refuses("--domain rect:8x8mm", 2, &["less than a neighbourhood", "--radii"]);
+    refuses("--domain rect:8x8mm --radii 12,10,9mm", 2, &["less than a neighbourhood", "--radii"]);
+    refuses(
+        "--domain rect:40x30mm --frame 15mm",
+        2,
+        &["--frame", "covers all of the domain", "a narrower one"],
+    );
+    refuses("--domain rect:40x30mm --twist 30", 2, &["--twist", "has no curve", "--domain band"]);
+    refuses("--domain rect:40x30mm --gap 3mm", 2, &["--gap", "has no curve"]);
     refuses(
         "--domain rect:90x60mm --radii 40,40,40mm --spacing .5,.5,.4mm",
         2,

@@ -41,7 +41,7 @@ fn holed() -> Area {
 }
 
 fn options(exemplar: &Drawing, seed: u64) -> Options {
-    Options { levels: default_levels(exemplar, 2), seed, iterations: 4, ..Options::default() }
+    Options { levels: default_levels(exemplar, 2, f64::INFINITY), seed, iterations: 4, ..Options::default() }
 }
 
 fn made(exemplar: &Drawing, area: &Area, options: &Options) -> Synthesis {
@@ -103,7 +103,8 @@ fn energy_falls_at_every_level() {
     for name in EXEMPLARS {
         let exemplar = read(name);
         let area = Area::new(region(&[&[(0.0, 0.0), (90.0, 0.0), (90.0, 90.0), (0.0, 90.0)]]));
-        let options = Options { levels: default_levels(&exemplar, 3), seed: 2, ..Options::default() };
+        let options =
+            Options { levels: default_levels(&exemplar, 3, f64::INFINITY), seed: 2, ..Options::default() };
         for (number, level) in made(&exemplar, &area, &options).levels.iter().enumerate() {
             let energies = &level.energies_per_sample;
             assert_eq!(energies.len(), options.iterations + 1);

@@ -92,7 +92,7 @@ pub(super) struct FillArguments {
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     levels: Option<usize>,
     /// Radius of neighbourhoods at each level, from coarse to fine, as 12,10,8mm: more sees larger motifs and takes longer. 20 to 30
-    /// samples in each are usual [default: in proportion to the exemplar]
+    /// samples in each are usual [default: in proportion to the exemplar, and no larger than the domain is wide]
     #[arg(long, value_name = "LENGTHS", value_parser = values::lengths, allow_hyphen_values = true)]
     radii: Option<values::Lengths>,
     /// Spacing of samples along curves at each level, as 8,6,5mm: less follows finer bends and takes longer [default: in proportion to the
@@ -330,9 +330,15 @@ fn say_fill(report: &FillReport) {
     }
 }
 
+/// Counts on less than this part of what the exemplar's were taken on say nothing.
+const LEAST_COUNTED: f64 = 0.25;
+
 /// What there is on an area like the exemplar's, but for what was asked for.
 fn say_densities(report: &FillReport) {
     let (made, learnt) = (&report.density, &report.exemplar_density);
+    if made.area_mm2 < LEAST_COUNTED * learnt.area_mm2 {
+        return;
+    }
     let counts = [
         ("component(s)", made.components, learnt.components, report.wanted_components.is_none()),
         ("hole(s)", made.holes, learnt.holes, report.wanted_holes.is_none()),

@@ -63,7 +63,7 @@ pub enum SampleError {
     },
     /// The area is smaller than a neighbourhood.
     #[error(
-        "the domain is {width_mm:.2} x {height_mm:.2} mm inside of its pen, less than a neighbourhood of radius {radius_mm:.2} mm: use a larger domain, or a smaller --radii"
+        "the domain is {width_mm:.2} x {height_mm:.2} mm inside of its pen, less than a neighbourhood of radius {radius_mm:.2} mm: use a larger domain, or a smaller --radii with a smaller --spacing"
     )]
     Small {
         /// The width of the area.

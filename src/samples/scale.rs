@@ -21,9 +21,10 @@ const LEAST_RADIUS: f64 = 1.5;
 /// A part of a chord error that measuring lengths is done with, in parts of the side.
 const MEASURED: f64 = 1e-4;
 
-/// So many levels (1 to 3), coarse first. Spacings follow from how far apart lines are, and radii from how many samples are then around one: 30, 30
-/// and 20 (Tu 2020 Appendix C).
-pub fn default_levels(drawing: &Drawing, levels: usize) -> Vec<Level> {
+/// So many levels (1 to 3), coarse first, for an area whose shorter side is `room_mm` long. Spacings follow from how far apart lines are, and radii
+/// from how many samples are then around one: 30, 30 and 20 (Tu 2020 Appendix C). In a narrow area neighbourhoods are as large as it is wide, and
+/// samples nearer to each other if they have to be; but never finer than the exemplar is worth, so that a tiny area may be smaller than a radius.
+pub fn default_levels(drawing: &Drawing, levels: usize, room_mm: f64) -> Vec<Level> {
     let levels = levels.clamp(1, 3);
     let Some((low, high)) = drawing.bounds_mm() else { return Vec::new() };
     let size = (high - low).max(DVec2::splat(1e-6));
@@ -33,16 +34,18 @@ pub fn default_levels(drawing: &Drawing, levels: usize) -> Vec<Level> {
     let rims: f64 = drawing.elements.iter().flat_map(|element| &element.contours).map(|c| rim(c)).sum();
     let apart_mm = size.element_product() / (lines + 0.5 * rims).max(1e-6);
     let level = |number: usize| {
-        let spacing_mm =
-            (SPACINGS[number] * apart_mm).clamp(SPACING_RANGE[0] * side_mm, SPACING_RANGE[1] * side_mm);
+        let most_mm = (SPACING_RANGE[1] * side_mm).min(room_mm / LEAST_RADIUS);
+        let spacing_mm = (SPACINGS[number] * apart_mm).min(most_mm).max(SPACING_RANGE[0] * side_mm);
         let resolution = Resolution { level: number, levels, spacing_mm };
         let samples = sampled(drawing, &elements, resolution).samples.len().max(1) as f64;
         let radius_mm =
             (NEIGHBOURS[number] * size.element_product() / (std::f64::consts::PI * samples)).sqrt();
         let least_mm = LEAST_RADIUS * spacing_mm;
+        let radius_mm = rounded(radius_mm.min(MOST_RADIUS * side_mm).min(room_mm).max(least_mm));
+        // Rounding must not make it larger than the area again.
         Level {
-            radius_mm: rounded(radius_mm.min(MOST_RADIUS * side_mm).max(least_mm)),
-            spacing_mm: rounded(spacing_mm),
+            radius_mm: radius_mm.min(room_mm.max(least_mm)),
+            spacing_mm: rounded(spacing_mm).min(radius_mm),
         }
     };
     (0..levels).map(level).collect()
@@ -58,4 +61,31 @@ fn rounded(mm: f64) -> f64 {
     let unit = 10.0_f64.powf(mm.log10().floor() - 2.0);
     // Divided by a whole number, so that the shortest text of it has three digits too.
     if unit < 1.0 { (mm / unit).round() / (1.0 / unit).round() } else { (mm / unit).round() * unit }
+}
+
+#[cfg(test)]
+mod tests {
+    use kurbo::BezPath;
+
+    use super::*;
+    use crate::samples::Curve;
+
+    #[test]
+    fn neighbourhoods_are_no_larger_than_a_narrow_area() {
+        let line = |i: i32| BezPath::from_svg(&format!("M0 {}H100", 10 * i)).unwrap();
+        let curves = (0..=10).map(|i| Curve { path: line(i), width_mm: 1.0 }).collect();
+        let drawing = Drawing { curves, elements: Vec::new() };
+        let wide = default_levels(&drawing, 3, 500.0);
+        assert!(
+            wide.iter().all(|level| level.radius_mm > 11.3 && level.radius_mm >= 1.5 * level.spacing_mm),
+            "{wide:?}"
+        );
+        for room_mm in [11.27, 9.999, 3.333] {
+            let narrow = default_levels(&drawing, 3, room_mm);
+            let fits = |level: &Level| level.radius_mm <= room_mm && level.spacing_mm <= level.radius_mm;
+            assert!(narrow.iter().all(fits), "{room_mm}: {narrow:?}");
+        }
+        // Where a sample is worth nothing it is refused later.
+        assert!(default_levels(&drawing, 1, 0.1)[0].radius_mm > 0.1);
+    }
 }

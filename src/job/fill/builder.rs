@@ -232,6 +232,18 @@ impl FillBuilder {
 
     fn check_band(&self) -> Result<(), JobError> {
         let is_band = self.domain == FillDomain::Band;
+        let of_curves = [
+            ("--gap", self.space.gap_mm.is_some()),
+            ("--twist", self.space.twist.is_some()),
+            ("--round", self.round_mm.is_some()),
+        ];
+        if let Some((option, _)) = of_curves.into_iter().find(|(_, is_given)| *is_given && !is_band) {
+            return Err(refused(
+                option,
+                format!("{} has no curve", self.domain),
+                "leave it out, or use --domain band with --along",
+            ));
+        }
         match (&self.along, self.width_mm) {
             (None, None) if !is_band => Ok(()),
             _ if !is_band => {

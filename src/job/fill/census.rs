@@ -196,6 +196,8 @@ fn winding(contours: &[Vec<DVec2>], p: DVec2) -> i32 {
 /// Parts of an exemplar's shorter side that are left out all around when it and what was made of it are counted, one after the other, as how a
 /// drawing ends is not what it is like inside. Of several windows the mean is steadier.
 const BORDERS: [f64; 4] = [0.05, 0.1, 0.15, 0.2];
+/// What is left of a narrow area has to be this part of it, or it is nearly all border.
+const LEAST_WINDOW: f64 = 0.25;
 
 /// How much of everything an exemplar has, away from the border of its page, or of the box around its lines where these are not on the page; and
 /// how long its shorter side is.
@@ -226,7 +228,9 @@ pub(super) fn density_of(
 /// has room.
 pub(super) fn density_inside(drawing: &Drawing, ink: &Region, area: &Region, side_mm: f64) -> Density {
     let window = |part: &f64| area.offset(-part * side_mm, part * side_mm / 10.0);
-    let windows: Vec<Region> = BORDERS.iter().map(window).filter(|window| !window.is_empty()).collect();
+    let least_mm2 = LEAST_WINDOW * area.area_mm2();
+    let windows: Vec<Region> =
+        BORDERS.iter().map(window).filter(|window| window.area_mm2() > least_mm2).collect();
     let windows = if windows.is_empty() { vec![area.clone()] } else { windows };
     Density::mean(windows.iter().map(|window| Density::new(drawing, &ink.within(window), window)).collect())
 }
@@ -266,6 +270,22 @@ mod tests {
             // 100 meshes to the 100 cm2; corners are neglected.
             assert!((found.components - 100.0).abs() < 8.0, "{found:?}");
             assert!((found.holes - 100.0).abs() < 8.0, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn a_strip_that_is_all_border_is_counted_whole() {
+        let grid = Grid::for_extent(200.0).unwrap();
+        let rectangle = |w: f64, h: f64| {
+            let corners = [(0.0, 0.0), (w, 0.0), (w, h), (0.0, h)];
+            let path = corners.map(|(x, y)| grid.snap(DVec2::new(x, y)).unwrap()).to_vec();
+            Region::fill(grid, &[path], FillRule::NonZero)
+        };
+        // Windows that are narrower by 2, 4, 6 and 8 mm, as far as they have room.
+        for (height, area_mm2) in [(20.0, 1430.0), (12.0, 670.0), (5.0, 294.0), (1.0, 100.0)] {
+            let area = rectangle(100.0, height);
+            let found = density_inside(&Drawing::default(), &Region::empty(grid), &area, 20.0);
+            assert!((found.area_mm2 - area_mm2).abs() < 1.0, "{height}: {found:?}");
         }
     }
 

@@ -87,6 +87,11 @@ impl Ground {
             Some(CurveSpec::Points { file } | CurveSpec::Model { file }) => Some(InputReport::of(file)),
             _ => None,
         };
+        if let Some(frame_mm) = options.frame_mm.filter(|&mm| ground.domain.offset(-mm, chord_mm).is_empty())
+        {
+            let found = format!("{frame_mm} mm is so wide that it covers all of the domain");
+            return Err(refused("--frame", found, "use a narrower one, or a larger domain"));
+        }
         match ground.area.region().is_empty() {
             false => Ok(Self { input: points.or(ground.input), ..ground }),
             true => Err(refused(

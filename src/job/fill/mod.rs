@@ -36,7 +36,7 @@ use super::stage::{Clock, Stage};
 use super::surface::SurfaceOptions;
 use crate::fabricate::{BridgeOptions, Counts};
 use crate::planar::Region;
-use crate::samples::{self, Drawing, Given};
+use crate::samples::{self, Area, Drawing, Given};
 use crate::topology::Wanted;
 
 pub use crate::samples::{
@@ -72,10 +72,12 @@ pub struct Fill {
 }
 
 impl FillJob {
-    /// The constants of the method for an exemplar, with its levels.
-    fn constants(&self, exemplar: &Drawing) -> SampleOptions {
+    /// The constants of the method for an exemplar, with its levels, in an area.
+    fn constants(&self, exemplar: &Drawing, area: &Area) -> SampleOptions {
         let options = &self.options;
-        let mut levels = samples::default_levels(exemplar, options.number_of_levels());
+        let (low, high) = area.bounds_mm();
+        let mut levels =
+            samples::default_levels(exemplar, options.number_of_levels(), (high - low).min_element());
         for (i, level) in levels.iter_mut().enumerate() {
             level.radius_mm = options.radii_mm.get(i).copied().unwrap_or(level.radius_mm);
             level.spacing_mm = options.spacing_mm.get(i).copied().unwrap_or(level.spacing_mm);
@@ -116,7 +118,7 @@ impl Fill {
         }
         given.clones = options.clones.iter().map(|clone| clone.placed(ground.shift_mm)).collect();
         let (learnt, side_mm) = density_of(&options.exemplar, &exemplar, &linework, chord_mm)?;
-        let constants = job.constants(&exemplar);
+        let constants = job.constants(&exemplar, &ground.area);
         notes.extend(given::oversize(&exemplar, &constants.levels));
         let domain_mm2 = ground.domain.area_mm2();
         let ends_wanted = (learnt.dangling_ends * domain_mm2 / census::AREA_MM2).round() as usize;
