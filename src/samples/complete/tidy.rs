@@ -14,6 +14,11 @@ const TWIG_PENS: f64 = 1.2;
 /// Ends that point at each other are joined across this many spacings while there are too many of them. With less, the gaps that the exemplar
 /// itself has are never closed, and where the output has more of them they stay.
 const REACH_SPACINGS: f64 = 2.0;
+/// Across more than this part of a spacing, two strokes that were never one become one, which is only done while ends are too many by more than
+/// `MANY`.
+const NEAR_SPACINGS: f64 = 0.6;
+/// So many times as many ends as there should be are many.
+const MANY: f64 = 1.04;
 
 /// What is done to a scene before its components and holes are counted. Ends are joined and twigs taken away until there are only
 /// `ends_wanted` ends in the open, as in the exemplar.
@@ -54,6 +59,12 @@ struct Tidy<'s, 'a> {
 impl Tidy<'_, '_> {
     fn is_enough(&self) -> bool {
         self.inside <= self.scene.work.completing.ends_wanted.unwrap_or(0)
+    }
+
+    /// Whether ends are too many to leave any that could be joined.
+    fn is_many(&self) -> bool {
+        let wanted = self.scene.work.completing.ends_wanted.unwrap_or(0);
+        self.inside as f64 > MANY * wanted as f64
     }
 
     fn is_inside(&self, end: usize) -> bool {
@@ -150,7 +161,11 @@ impl Tidy<'_, '_> {
             }
         }
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
-        for (_, ends, link) in pairs {
+        for (way_mm, ends, link) in pairs {
+            let is_far = way_mm > NEAR_SPACINGS * scene.spacing_mm;
+            if is_far && !self.is_many() {
+                return;
+            }
             if !self.is_enough() && ends.iter().all(|end| self.open.contains(end)) {
                 self.link(ChangeKind::Join, link, None, &ends);
             }
