@@ -9,7 +9,7 @@ use std::path::Path;
 use common::{Finished, Room};
 use openwork::job::FillBuilder;
 use openwork::planar::{Grid, Region, Tolerances};
-use openwork::samples::{Drawing, inked};
+use openwork::samples::{Curve, Drawing, inked};
 use openwork::verify::{SvgReport, read_svg};
 use serde_json::Value;
 
@@ -270,16 +270,52 @@ fn what_is_kept_stays() {
 }
 
 #[test]
-fn a_box_of_the_exemplar_goes_where_it_is_told_to() {
+fn a_box_of_the_exemplar_comes_whole_to_its_place() {
     let room = room();
-    let (found, _) = fill(&room, "twigs.svg --domain rect:90x60mm --iterations 0 --clone 0,0,40x30->45,25");
-    // Two stems that are wholly in the box, by their feet in the exemplar.
-    for (x, y) in [(14.0, 7.0), (28.0, 6.0)] {
-        for up in 0..9 {
-            let (x, y) = (x + 45.0 + 1.0, y + f64::from(up) + 25.0 + 1.0);
-            assert!(covers(&found.region, x, y), "{x} {y}");
+    for how in ["", "--start noise --iterations 2", "--components 1"] {
+        let job = format!("twigs.svg --domain rect:90x60mm --seed 3 --clone 0,0,40x30->45,25 {how}");
+        let (found, _) = fill(&room, &job);
+        // Two twigs that are wholly in the box, by their feet in the exemplar, with their arms.
+        for (x, y) in [(14.0, 7.0), (28.0, 6.0)] {
+            let stem = (0..9).map(|up| (0.0, f64::from(up)));
+            let arms = (1..4).flat_map(|out| {
+                [(f64::from(out), 4.0 + f64::from(out)), (-f64::from(out), 6.0 + f64::from(out))]
+            });
+            for (dx, dy) in stem.chain(arms) {
+                let (x, y) = (x + dx + 45.0 + 1.0, y + dy + 25.0 + 1.0);
+                assert!(covers(&found.region, x, y), "{how}: {x} {y}");
+            }
         }
     }
+    let job = "fill twigs.svg --domain rect:90x60mm -o out.svg --clone";
+    room.refuses(&format!("{job} 100,0,40x30->45,25"), 2, &["--clone", "beyond the exemplar", "120.00"]);
+    room.refuses(&format!("{job} 0,0,4x4->45,25"), 2, &["--clone", "where nothing is drawn"]);
+    room.refuses(&format!("{job} 0,0,40x30->85,25"), 2, &["--clone", "outside of the domain"]);
+    room.refuses(
+        &format!("{job} 0,0,40x30->45,25 --clone 0,0,40x30->20,10"),
+        2,
+        &["--clone", "over what is copied"],
+    );
+}
+
+#[test]
+fn copied_elements_stay_where_they_are_put() {
+    let room = Room::with(&[]);
+    let discs =
+        (0..32).map(|i| format!("<circle cx='{}' cy='{}' r='3'/>", 8 + 14 * (i % 8), 8 + 14 * (i / 8)));
+    room.draw("discs.svg", &discs.collect::<String>());
+    // The lower left ones, moved off their grid.
+    let (found, _) = fill(&room, "discs.svg --domain rect:90x60mm --clone 0,0,30x30->33.3,21.7");
+    for (x, y) in [(8.0, 10.0), (22.0, 10.0), (8.0, 24.0), (22.0, 24.0)] {
+        let (x, y) = (x + 34.3, y + 22.7);
+        assert!(
+            [(0.0, 0.0), (2.9, 0.0), (-2.9, 0.0), (0.0, 2.9), (0.0, -2.9)]
+                .iter()
+                .all(|(dx, dy)| { covers(&found.region, x + dx, y + dy) }),
+            "{x} {y}"
+        );
+    }
+    assert_eq!(found.holes, 0);
 }
 
 #[test]
@@ -295,7 +331,9 @@ fn what_is_kept_comes_out_exactly_and_counts() {
         .run(&mut |_| {})
         .unwrap();
     let region = filled.region();
-    let curves = filled.drawing().curves.iter().rev().take(2).cloned().collect();
+    // Chords of round outlines lie a little inside.
+    let kept = filled.drawing().curves.iter().rev().take(2).cloned();
+    let curves = kept.map(|curve| Curve { width_mm: curve.width_mm - 0.02, ..curve }).collect();
     let begun = Drawing { curves, elements: Vec::new() };
     let ink = inked(&begun, region.grid(), 0.25 * Tolerances::default().chord_mm()).unwrap();
     // But for steps of the grid where outlines cross.
@@ -310,6 +348,38 @@ fn what_is_kept_comes_out_exactly_and_counts() {
         2,
         &["--keep", "beside the strip", "lower left corner"],
     );
+}
+
+#[test]
+fn what_is_kept_keeps_its_ends_and_its_pen() {
+    let room = room();
+    // A thick bar with flat ends, a shape, and a dot that no neighbourhood sees.
+    room.draw(
+        "begun.svg",
+        "<path d='M20 30H60' stroke='red' stroke-width='6'/><circle cx='70' cy='15' r='4'/><circle cx='150' cy='30' r='2'/>",
+    );
+    let job = "--domain rect:90x60mm --keep begun.svg --seed 2";
+    let (found, report) = fill(&room, &format!("twigs.svg {job}"));
+    let y = |svg: f64| 60.0 - svg + 1.0;
+    for (x, at) in [(20.1, 27.1), (59.9, 32.9), (40.0, 30.0), (70.0, 11.1), (73.9, 15.0), (150.0, 30.0)] {
+        assert!(covers(&found.region, x + 1.0, y(at)), "{x} {at}");
+    }
+    // Only the bar and the shapes are as wide as this.
+    let wide = found.region.offset(-1.2, 0.01);
+    let [low, high] = [wide.bounds_mm().unwrap().0, wide.bounds_mm().unwrap().1];
+    assert_eq!(wide.components(), 3, "{low} {high}");
+    // A round end would begin at 19.2 mm; strokes of the pattern that end on it add a little.
+    assert!(low.x > 21.0, "{low}");
+    let notes = report["notes"].to_string();
+    assert!(
+        notes.contains("1 component(s) of --keep lie beside the domain") && !notes.contains("flat ends"),
+        "{notes}"
+    );
+    // On a strip as well, from whose corner it is drawn.
+    room.draw("bar.svg", "<path d='M20 30H60' stroke='red' stroke-width='6'/>");
+    let (found, _) = fill(&room, "twigs.svg --domain band --along line:90mm --width 40mm --keep bar.svg");
+    let wide = found.region.offset(-1.2, 0.01);
+    assert!(wide.bounds_mm().unwrap().0.x > 21.0);
 }
 
 #[test]
@@ -414,11 +484,11 @@ fn what_cannot_be_filled() {
 fn what_cannot_be_kept() {
     let room = room();
     room.draw("upon.svg", &format!("<path d='M10 10H50' {PEN}/><path d='M60 10H20' {PEN}/>"));
-    room.draw("disc.svg", "<circle cx='30' cy='30' r='9'/>");
     let refuses = |file: &str, words: &[&str]| {
         room.refuses(&format!("fill twigs.svg --domain rect:90x60mm --keep {file} -o out.svg"), 2, words);
     };
     refuses("upon.svg", &["--keep: upon.svg", "strokes 1 and 2 lie upon each other", "delete one"]);
-    refuses("disc.svg", &["there is no stroke in it", "strokes without a fill"]);
+    room.draw("empty.svg", "");
+    refuses("empty.svg", &["draws nothing"]);
     room.refuses("fill twigs.svg --domain rect:90x60mm --keep twigs.svg -o twigs.svg", 2, &["twigs.svg"]);
 }

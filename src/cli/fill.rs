@@ -99,7 +99,7 @@ pub(super) struct FillArguments {
     /// exemplar]
     #[arg(long, value_name = "LENGTHS", value_parser = values::lengths, allow_hyphen_values = true)]
     spacing: Option<values::Lengths>,
-    /// Searches and assignments at each level
+    /// Searches and assignments at each level; 0 leaves the pattern as it begins
     #[arg(long, value_name = "N", default_value_t = SampleOptions::default().iterations, allow_negative_numbers = true)]
     iterations: usize,
     /// How it begins: patches of the exemplar, each suiting those around it, or noise, single samples
@@ -114,11 +114,13 @@ pub(super) struct FillArguments {
     /// The width of bridges, which join components and open holes where no edge of the pattern does [default: that of the pen]
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     bridge: Option<f64>,
-    /// Strokes that are there already, in the domain or beside it, and stay as they are; the pattern goes on from them. Drawn on the page
-    /// of the domain's file; of a rectangle or a strip, from its lower left corner
+    /// Strokes that are there already, in the domain or beside it (of a strip, in it), and stay as they are; the pattern goes on from them.
+    /// Shapes in the file stay too, and the pattern runs up to them and under them. Drawn on the page of the domain's file; of a rectangle or
+    /// a strip, from its lower left corner
     #[arg(long, value_name = "FILE.svg")]
     keep: Option<PathBuf>,
-    /// Copy a box of the exemplar to a place before anything else, in mm from lower left corners: X,Y,WxH->X,Y; may be repeated
+    /// Copy a box of the exemplar to a place, where it stays whole; the pattern goes on from it. In mm from lower left corners, of the
+    /// exemplar's page and of the domain: X,Y,WxH->X,Y; may be repeated
     #[arg(long, value_name = "SRC->DST", value_parser = str::parse::<CloneSpec>, allow_hyphen_values = true)]
     clone: Vec<CloneSpec>,
     #[command(flatten)]

@@ -33,8 +33,10 @@ pub struct Linework {
     name: String,
     sha256: String,
     notes: Vec<String>,
+    lost: Option<String>,
     page_mm: [f64; 2],
     strokes: Vec<Line>,
+    stroke_ink: Vec<Vec<DVec2>>,
     elements: Vec<Vec<Vec<DVec2>>>,
 }
 
@@ -65,8 +67,10 @@ impl Linework {
             name: name.to_owned(),
             sha256: sha256(bytes),
             notes: Vec::new(),
+            lost: None,
             page_mm: [artwork.page_mm.0, artwork.page_mm.1],
             strokes: Vec::new(),
+            stroke_ink: Vec::new(),
             elements: Vec::new(),
         };
         linework.lay(&parts, 1.0, options)?;
@@ -75,7 +79,7 @@ impl Linework {
         if let Some(height_mm) = options.target_height_mm {
             linework.lay(&parts, height_mm / bounds.height(), options)?;
         }
-        linework.notes = parts.notes;
+        (linework.notes, linework.lost) = (parts.notes, parts.lost);
         Ok(linework)
     }
 
@@ -85,6 +89,12 @@ impl Linework {
             |line: &Line| Line { path: Affine::scale(scale) * &line.path, width_mm: line.width_mm * scale };
         self.strokes = parts.strokes.iter().map(pen).collect();
         self.page_mm = self.page_mm.map(|mm| mm * scale);
+        self.stroke_ink = match parts.drawn_strokes.is_empty() {
+            true => Vec::new(),
+            false => {
+                contours(&regions(&[&parts.drawn_strokes], scale, options.chord_mm, &options.limits)?[0])
+            }
+        };
         let drawings: Vec<&[Item<Shape>]> = parts.elements.iter().map(Vec::as_slice).collect();
         self.elements.clear();
         if !drawings.is_empty() {
@@ -115,6 +125,11 @@ impl Linework {
         &self.strokes
     }
 
+    /// What the curves cover as they are drawn, with their own ends and corners: closed polygons with the ink on their left.
+    pub fn stroke_ink(&self) -> &[Vec<DVec2>] {
+        &self.stroke_ink
+    }
+
     /// The elements, in the order of the file: each one as closed polygons with the ink on their left, the first one an exterior. An
     /// element may have several components.
     pub fn elements(&self) -> &[Vec<Vec<DVec2>>] {
@@ -139,6 +154,11 @@ impl Linework {
     /// What is worth telling the user though it is no error, one sentence each.
     pub fn notes(&self) -> &[String] {
         &self.notes
+    }
+
+    /// What is lost where the curves are drawn again by a round pen, if anything is, as a sentence.
+    pub fn lost(&self) -> Option<&str> {
+        self.lost.as_deref()
     }
 }
 
@@ -183,7 +203,7 @@ mod tests {
             "<g transform='translate(5 0) rotate(90) scale(2)'><path d='M10 -10H20V-20M30 -30h5z' {PEN}/></g>"
         ));
         let [open, closed] = linework.strokes() else { panic!("two subpaths are two curves") };
-        assert!((open.width_mm - 4.0).abs() < 1e-4 && linework.notes().is_empty(), "{linework:?}");
+        assert!((open.width_mm - 4.0).abs() < 1e-4 && linework.lost().is_none(), "{linework:?}");
         let start = open.path.elements()[0].end_point().unwrap();
         assert!(start.distance(kurbo::Point::new(25.0, 80.0)) < 1e-3, "{start:?}");
         assert!(!is_closed(&open.path) && is_closed(&closed.path));
@@ -251,6 +271,19 @@ mod tests {
     }
 
     #[test]
+    fn strokes_cover_what_they_are_drawn_with() {
+        let linework = read("<path d='M10 10H30V30' fill='none' stroke='red' stroke-width='4'/>");
+        let [contour] = linework.stroke_ink() else { panic!("{linework:?}") };
+        // Flat ends and a corner; some vertices lie on straight sides.
+        let n = contour.len();
+        let area = 0.5 * (0..n).map(|i| contour[i].perp_dot(contour[(i + 1) % n])).sum::<f64>();
+        assert!((area - 4.0 * 40.0).abs() < 1e-3, "{area}");
+        let corner = |p: &DVec2| p.distance(DVec2::new(32.0, 92.0)) < 1e-3;
+        assert!(contour.iter().any(corner) && contour.iter().all(|p| p.x > 9.99), "{contour:?}");
+        assert!(read("<rect width='9' height='9'/>").stroke_ink().is_empty());
+    }
+
+    #[test]
     fn what_no_pen_draws_is_named() {
         let says = |body: &str, wanted: &[&str]| {
             let message = read_at(body, None).unwrap_err();
@@ -267,6 +300,6 @@ mod tests {
         says("", &["draws nothing"]);
         says("<path d='M0 0H9' fill='none'/>", &["has no filled area"]);
         let flat = read("<path d='M0 0H9M3 3H9' fill='none' stroke='red'/>");
-        assert!(flat.notes()[0].starts_with("2 curves have flat ends (the first is <path> on line 2)"));
+        assert!(flat.lost().unwrap().starts_with("2 curves have flat ends (the first is <path> on line 2)"));
     }
 }

@@ -33,9 +33,13 @@ pub struct Line {
 #[derive(Default)]
 pub(super) struct Parts {
     pub(super) strokes: Vec<Line>,
+    /// These as they are drawn.
+    pub(super) drawn_strokes: Vec<Item<Shape>>,
     /// Each one as the fills and strokes that it has.
     pub(super) elements: Vec<Vec<Item<Shape>>>,
     pub(super) notes: Vec<String>,
+    /// What is lost where the curves are drawn again by a round pen.
+    pub(super) lost: Option<String>,
     /// How many open curves have flat ends, and the first of them.
     flat: Option<(Place, usize)>,
 }
@@ -109,11 +113,11 @@ impl Parts {
             }
             self.elements[element].push(piece.item.clone());
         }
-        self.notes.extend(self.flat.take().map(|(place, count)| {
+        self.lost = self.flat.take().map(|(place, count)| {
             let (curves, first) =
                 if count == 1 { ("curve has", "it is") } else { ("curves have", "the first is") };
             format!("{count} {curves} flat ends ({first} {place}); curves are synthesized with round ones")
-        }));
+        });
         Ok(())
     }
 
@@ -151,6 +155,7 @@ impl Parts {
         {
             return Err(ExemplarFault::Coordinate { place: shape.place.clone(), value, limit, unit: "mm" });
         }
+        self.drawn_strokes.push(piece.item.clone());
         for subpath in path.subpaths() {
             let mut path: BezPath = subpath.iter().copied().collect();
             let bounds = path.bounding_box();

@@ -35,7 +35,7 @@ pub fn cut(graph: &mut Graph, elements: &mut Elements, area: &Area, least_mm: f6
     for edge in std::mem::take(&mut graph.edges) {
         let [a, b] = edge.ends;
         let (first, last) = (&graph.samples[a], &graph.samples[b]);
-        if first.is_given && last.is_given || first.kind != Kind::Curve {
+        if edge.is_given() || first.kind != Kind::Curve {
             graph.edges.push(edge);
             continue;
         }

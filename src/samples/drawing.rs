@@ -30,6 +30,14 @@ pub struct Drawing {
 }
 
 impl Drawing {
+    /// It with another one.
+    pub fn with(&self, other: &Self) -> Self {
+        let mut both = self.clone();
+        both.curves.extend_from_slice(&other.curves);
+        both.elements.extend_from_slice(&other.elements);
+        both
+    }
+
     /// Lower left and upper right corner of the lines of curves and of the ink of elements, in millimetres; `None` if there is nothing.
     pub fn bounds_mm(&self) -> Option<(DVec2, DVec2)> {
         let of_curve = |curve: &Curve| {

@@ -73,8 +73,7 @@ pub fn join(graph: &mut Graph, source: &Source, matchings: &[Matching], area: &A
 
 /// Edges between samples that the maker gave stay.
 fn given(graph: &Graph) -> impl Iterator<Item = Edge> + '_ {
-    let is_given = |edge: &&Edge| edge.ends.iter().all(|&end| graph.samples[end].is_given);
-    graph.edges.iter().filter(is_given).map(|edge| Edge { confidence: f64::INFINITY, ..*edge })
+    graph.edges.iter().filter(|edge| edge.is_given()).copied()
 }
 
 /// Counts the neighbourhoods that have both ends of each candidate.
@@ -111,12 +110,11 @@ fn choose(graph: &mut Graph, edges: Vec<Edge>, wanted: &[f64], area: &Area, leas
         let off = |s: usize, more: f64| (degrees[s] + more - wanted[s]).abs();
         let with = (1.0 - edge.confidence).abs() + off(a, 1.0) + off(b, 1.0);
         let without = edge.confidence + off(a, 0.0) + off(b, 0.0);
-        let is_given = edge.confidence == f64::INFINITY;
-        if is_given || (edge.confidence >= least && with < without && !field.crosses(edge.ends)) {
+        if edge.is_given() || (edge.confidence >= least && with < without && !field.crosses(edge.ends)) {
             degrees[a] += 1.0;
             degrees[b] += 1.0;
             field.add(edge.ends);
-            taken.push(Edge { confidence: edge.confidence.min(1.0), ..edge });
+            taken.push(edge);
         } else {
             left.push(edge);
         }

@@ -64,6 +64,8 @@ pub struct Placed {
     pub class: u32,
     /// From the class to the element.
     pub similarity: Similarity,
+    /// Whether it was given by the maker, and stays.
+    pub is_given: bool,
 }
 
 /// Elements that are alike.
@@ -96,6 +98,7 @@ impl Elements {
             found.placed.push(Placed {
                 class: number,
                 similarity: Similarity { shift: onto.shift + centroid(&element.contours), ..onto },
+                is_given: false,
             });
             if number as usize == found.classes.len() {
                 found.classes.push(class);

@@ -43,11 +43,18 @@ pub struct Sample {
 pub struct Edge {
     /// The numbers of its samples, which differ, the smaller first.
     pub ends: [usize; 2],
-    /// The vote ī(e) from 0 to 1 that there is such an edge.
+    /// The vote ī(e) from 0 to 1 that there is such an edge; infinite for what the maker gave.
     pub confidence: f64,
     /// From each end to the control point of the cubic Bézier curve that belongs to it, in millimetres. The exemplar's are voted on with
     /// the edge, which keeps bends that are finer than the spacing; Tu 2020 §4.4.2 has directions only.
     pub handles: [DVec2; 2],
+}
+
+impl Edge {
+    /// Whether it was given by the maker: it is never taken away.
+    pub fn is_given(&self) -> bool {
+        self.confidence == f64::INFINITY
+    }
 }
 
 /// A sample graph.

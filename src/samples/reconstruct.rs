@@ -224,8 +224,13 @@ impl<'a> Weave<'a> {
         if route.is_closed && at == begin {
             path.close_path();
         }
-        let width = |&sample: &usize| self.graph.samples[sample].width_mm;
-        let width_mm = route.samples.iter().map(width).sum::<f64>() / route.samples.len() as f64;
+        // What goes on from a stroke that was given has a pen of its own.
+        let samples = || route.samples.iter().map(|&sample| &self.graph.samples[sample]);
+        let mut widths: Vec<f64> = samples().filter(|s| !s.is_given).map(|s| s.width_mm).collect();
+        if widths.is_empty() {
+            widths = samples().map(|s| s.width_mm).collect();
+        }
+        let width_mm = widths.iter().sum::<f64>() / widths.len() as f64;
         Curve { path, width_mm }
     }
 }
@@ -325,6 +330,22 @@ mod tests {
         assert!(a.perp_dot(b).abs() < 1e-12 && a.dot(b) < 0.0, "{a} and {b}");
         assert_eq!(found.handles[1][1], DVec2::new(-3.0, 0.0));
         assert_eq!(found.handles[2][0], DVec2::new(0.0, 8.0 / 3.0));
+    }
+
+    #[test]
+    fn what_goes_on_from_a_given_stroke_has_its_own_pen() {
+        let mut graph = graph(
+            vec![sample(0.0, 0.0, &[]), sample(9.0, 0.0, &[]), sample(18.0, 0.0, &[])],
+            &[(0, 1), (1, 2)],
+        );
+        (graph.samples[0].width_mm, graph.samples[0].is_given) = (4.0, true);
+        let widths = |graph: &Graph| -> Vec<f64> {
+            let found = reconstruct(graph, &[], &area(None), &Options::default());
+            found.drawing.curves.iter().map(|curve| curve.width_mm).collect()
+        };
+        assert_eq!(widths(&graph), [1.0]);
+        graph.samples.iter_mut().for_each(|sample| sample.is_given = true);
+        assert_eq!(widths(&graph), [2.0]);
     }
 
     #[test]

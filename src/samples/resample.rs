@@ -131,9 +131,15 @@ fn lay(
         let t = ((mm - along[i]) / (along[i + 1] - along[i]).max(1e-12)).clamp(0.0, 1.0);
         (points[i].lerp(points[i + 1], t), owners[if t < 0.5 { i } else { i + 1 }])
     };
+    // What goes on from a stroke that was given has a pen of its own.
+    let own = chain.iter().flat_map(|&(_, from, to)| [from, to]).find(|&s| !graph.samples[s].is_given);
+    let width_mm = |owner: usize| {
+        let like = own.filter(|_| graph.samples[owner].is_given).unwrap_or(owner);
+        graph.samples[like].width_mm
+    };
     let [first, last] = [start, chain[chain.len() - 1].2].map(|s| node_of[s].expect("chains end at nodes"));
     let key = [first.min(last), first.max(last)];
-    if graph.samples[start].is_given && graph.samples[chain[chain.len() - 1].2].is_given && chain.len() == 1 {
+    if graph.edges[chain[0].0].is_given() {
         return;
     }
     let least = match first == last {
@@ -149,7 +155,7 @@ fn lay(
             true => last,
             false => {
                 let (p, owner) = locate(mm(i));
-                fine.samples.push(curve_sample(area.home(p), graph.samples[owner].width_mm));
+                fine.samples.push(curve_sample(area.home(p), width_mm(owner)));
                 parents.push(owner);
                 fine.samples.len() - 1
             }

@@ -7,6 +7,7 @@ use glam::DVec2;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::area::Area;
+use super::copies::CloneBox;
 use super::draws::Draws;
 use super::graph::{Edge, Graph, Kind};
 use super::neighbours::Buckets;
@@ -28,17 +29,6 @@ const STARTS: usize = 8;
 /// Samples nearer to each other than this part of δ are the same in an overlap.
 const SAME: f64 = 0.6;
 
-/// A patch that is laid before all others: the middle of a box of the exemplar, its half size, and the place where its middle goes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CloneBox {
-    /// The middle of the box in the exemplar, in millimetres.
-    pub from_mm: DVec2,
-    /// Half of its width and height.
-    pub half_mm: DVec2,
-    /// The place in the output.
-    pub to_mm: DVec2,
-}
-
 /// The output in the making: samples, edges, and the sample of the exemplar that each sample was copied from.
 pub struct Started {
     /// Samples and edges.
@@ -59,7 +49,7 @@ struct Patcher<'a> {
     windows: Vec<(DVec2, DVec2)>,
 }
 
-/// Patches over all of the area, the clones first, around what is `given`.
+/// Patches over all of the area but for the clones, around what is `given`.
 pub fn patches(
     source: &Source,
     given: Graph,
@@ -95,12 +85,9 @@ fn laid(
         unmatched_mm: options.unmatched.most * spacing_mm,
         started: Started { graph: given, origins },
         pairs,
-        windows: Vec::new(),
+        windows: clones.iter().map(|clone| (clone.to_mm, clone.half_mm)).collect(),
     };
     let mut unsuited = 0.0;
-    for clone in clones {
-        patcher.lay(clone.to_mm, clone.from_mm, clone.half_mm);
-    }
     let (low, high) = source.bounds_mm;
     let (area_low, area_high) = area.bounds_mm();
     let half = DVec2::splat(0.5 * PATCH * (high - low).min_element());
@@ -263,7 +250,7 @@ impl Patcher<'_> {
 
 /// Single samples at random places, as many as the exemplar has for the size of the area, each like a random one of the exemplar and without
 /// edges: white noise (Tu 2020 §5.2).
-pub fn noise(source: &Source, given: Graph, area: &Area, options: &Options) -> Started {
+pub fn noise(source: &Source, given: Graph, clones: &[CloneBox], area: &Area, options: &Options) -> Started {
     let (low, high) = source.bounds_mm;
     let density = source.graph.samples.len() as f64 / (high - low).element_product();
     let (area_low, area_high) = area.bounds_mm();
@@ -275,7 +262,7 @@ pub fn noise(source: &Source, given: Graph, area: &Area, options: &Options) -> S
         let at = area_low + size * DVec2::new(draws.unit(), draws.unit());
         let i = draws.below(source.graph.samples.len());
         let like = &source.graph.samples[i];
-        if area.contains(at) {
+        if area.contains(at) && !clones.iter().any(|clone| clone.covers(at, area)) {
             let sample = match like.kind {
                 Kind::Curve => super::graph::Sample {
                     orientations: like.orientations.clone(),

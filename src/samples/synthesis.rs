@@ -6,7 +6,8 @@ use glam::DVec2;
 
 use super::area::Area;
 use super::border;
-use super::drawing::Drawing;
+use super::copies::{CloneBox, Copies};
+use super::drawing::{Curve, Drawing};
 use super::edges;
 use super::elements::{Elements, Placed, Similarity};
 use super::existence;
@@ -39,6 +40,8 @@ pub struct Synthesis {
     pub elements: Elements,
     /// What was given, as it was drawn.
     pub given: Drawing,
+    /// Curves that were copied from the exemplar, as they lie; copied elements are among the others.
+    pub copied: Vec<Curve>,
     /// What happened at each level.
     pub levels: Vec<LevelReport>,
 }
@@ -62,9 +65,11 @@ pub fn synthesize(
     };
     let elements = Elements::of(&exemplar.elements);
     let bounds_mm = roomy(exemplar.bounds_mm().ok_or(SampleError::Empty)?);
-    given.check(bounds_mm, wanted, options)?;
+    given.check(wanted)?;
+    let copies = Copies::new(&given.clones, exemplar, &elements, wanted)?;
+    let is_curved = !exemplar.curves.is_empty();
     let levels = options.levels.len();
-    let mut output = Output { graph: Graph::default(), placed: Vec::new(), found: Vec::new() };
+    let mut output = Output { graph: Graph::default(), placed: copies.placed.clone(), found: Vec::new() };
     let mut reports = Vec::new();
     for (number, &level) in options.levels.iter().enumerate() {
         let began = Instant::now();
@@ -74,11 +79,10 @@ pub fn synthesize(
         super::level::check_crowd(&points, level, None)?;
         let source = Source::new(learnt, bounds_mm, level.radius_mm);
         super::level::check_source(&source, level, area)?;
-        // Beside a pattern of elements alone, strokes are no part of it.
-        let fixed = match exemplar.curves.is_empty() {
-            true => Graph::default(),
-            false => given.sampled(&elements, resolution),
-        };
+        // Elements of a level come from the one before.
+        let placed = if number == 0 { copies.placed.clone() } else { Vec::new() };
+        let fixed = Elements { classes: elements.classes.clone(), placed };
+        let fixed = given.sampled(&copies, fixed, area, resolution, is_curved);
         let run = Run { source: &source, elements: &elements, area, options, number, level };
         match number {
             0 => run.begin(&mut output, fixed, &given.clones),
@@ -97,7 +101,13 @@ pub fn synthesize(
     if output.graph.samples.is_empty() {
         return Err(SampleError::NoRoom);
     }
-    Ok(Synthesis { graph: output.graph, elements, given: given.drawing.clone(), levels: reports })
+    Ok(Synthesis {
+        graph: output.graph,
+        elements,
+        given: given.drawing.clone(),
+        copied: copies.curves,
+        levels: reports,
+    })
 }
 
 /// A box that is not narrower than a part of its length, around the same middle: a single straight line has no box to speak of.
@@ -130,18 +140,18 @@ struct Run<'a> {
 
 impl Run<'_> {
     /// The first samples of the coarsest level.
-    fn begin(&self, output: &mut Output, given: Graph, clones: &[start::CloneBox]) {
+    fn begin(&self, output: &mut Output, given: Graph, clones: &[CloneBox]) {
         let started = match self.options.start {
             Start::Patches => {
                 start::patches(self.source, given, clones, self.area, self.options, self.level.spacing_mm)
             }
-            Start::Noise => start::noise(self.source, given, self.area, self.options),
+            Start::Noise => start::noise(self.source, given, clones, self.area, self.options),
         };
         output.graph = started.graph;
         output.found = self.middles_near(&output.graph, &started.origins);
         for (s, origin) in started.origins.iter().enumerate() {
             let sample = &mut output.graph.samples[s];
-            if let Kind::Element { class, .. } = sample.kind {
+            if let (Kind::Element { class, .. }, false) = (sample.kind, sample.is_given) {
                 let like = origin.map(|i| self.source.graph.samples[i].element);
                 place(
                     &mut output.placed,
@@ -186,7 +196,7 @@ impl Run<'_> {
                     orientations: Vec::new(),
                     width_mm: 0.0,
                     existence: 1.0,
-                    is_given: false,
+                    is_given: placed.is_given,
                     element: number as u32,
                 });
                 found.push(None);
@@ -379,6 +389,10 @@ impl Run<'_> {
             }
             number_of[number] = placed.len() as u32;
             let old = output.placed[number];
+            if old.is_given {
+                placed.push(old);
+                continue;
+            }
             let points = self.points(old.class);
             let similarity = match points.len() {
                 1 => Similarity { shift: targets[0].1, ..old.similarity },
@@ -404,5 +418,6 @@ impl Run<'_> {
 fn place(placed: &mut Vec<Placed>, sample: &mut Sample, class: u32, like: Option<Similarity>) {
     let similarity = like.unwrap_or(Similarity::shifted(DVec2::ZERO));
     sample.element = placed.len() as u32;
-    placed.push(Placed { class, similarity: Similarity { shift: sample.at, ..similarity } });
+    let similarity = Similarity { shift: sample.at, ..similarity };
+    placed.push(Placed { class, similarity, is_given: false });
 }

@@ -12,7 +12,7 @@ use crate::job::error::JobError;
 use crate::job::stage::{Clock, Stage};
 use crate::planar::{Contour, Region};
 use crate::samples::{
-    self, ChangeKind, CompleteError, CompleteOptions, Drawing, Element, Given, LevelReport, Options,
+    self, ChangeKind, CompleteError, CompleteOptions, Curve, Drawing, Element, Given, LevelReport, Options,
     SampleError,
 };
 
@@ -53,8 +53,9 @@ impl ChangeReport {
 
 /// A pattern in its area.
 pub(super) struct Pattern {
+    /// It, without what is kept.
     pub(super) drawing: Drawing,
-    /// What it covers.
+    /// What it covers with what is kept.
     pub(super) region: Region,
     /// Components and holes before anything was done for the goal.
     pub(super) own: Counts,
@@ -64,7 +65,7 @@ pub(super) struct Pattern {
     pub(super) lacking: Option<String>,
 }
 
-/// A pattern like `exemplar` all over the area, with what is given, completed as far as the goal can be met.
+/// A pattern like `exemplar` all over the area, with what is given, of which `kept` is the ink, completed as far as the goal can be met.
 ///
 /// # Errors
 /// [`JobError`] when there is no pattern.
@@ -72,7 +73,7 @@ pub(super) fn pattern(
     (job, constants): (&FillJob, &Options),
     exemplar: &Drawing,
     ground: &Ground,
-    given: &Given,
+    (given, kept): (&Given, &Drawing),
     ends_wanted: usize,
     clock: &mut Clock<'_>,
 ) -> Result<Pattern, JobError> {
@@ -96,12 +97,17 @@ pub(super) fn pattern(
         ends_wanted: Some(ends_wanted),
         ..CompleteOptions::default()
     };
-    // What is kept is ink as it was drawn, and the pattern's strokes through its samples would be a second one.
-    let kept = samples::inked(&given.drawing, ground.area.region().grid(), completing.chord_mm);
-    elements.extend(as_elements(&kept.map_err(grid_error)?));
+    // What is given is ink as it was drawn, and the pattern's strokes through its samples would be a second one.
+    let copied = synthesis
+        .copied
+        .iter()
+        .map(|curve| Curve { width_mm: job.options.stroke_mm.unwrap_or(curve.width_mm), ..curve.clone() });
+    let there = Drawing { curves: copied.collect(), elements: kept.elements.clone() };
+    let ink = samples::inked(&there, ground.area.region().grid(), completing.chord_mm).map_err(grid_error)?;
+    elements.extend(as_elements(&ink));
     let mut graph = synthesis.graph;
-    let is_given: Vec<bool> = graph.samples.iter().map(|sample| sample.is_given).collect();
-    graph.edges.retain(|edge| !edge.ends.iter().all(|&end| is_given[end]));
+    graph.edges.retain(|edge| !edge.is_given());
+    samples::clear_of(&mut graph, &ink, &ground.area);
     let completed = clock.time(Stage::Complete, || {
         samples::complete(&graph, &elements, &ground.area, constants, &job.options.goal, &completing)
     });
@@ -116,8 +122,7 @@ pub(super) fn pattern(
     };
     let mut drawing = completed.drawing;
     drawing.elements.truncate(own_elements);
-    drawing.elements.extend_from_slice(&given.drawing.elements);
-    drawing.curves.extend_from_slice(&given.drawing.curves);
+    drawing.curves.extend(there.curves);
     Ok(Pattern {
         drawing,
         region: completed.region,

@@ -3,16 +3,17 @@
 use std::path::Path;
 
 use glam::DVec2;
-use kurbo::Shape;
 use rustc_hash::FxHashMap;
 
+use super::CloneSpec;
 use super::builder::refused;
+use super::ground::moved;
 use crate::exemplar::{Limits, Linework, ReadOptions};
 use crate::job::error::JobError;
 use crate::job::flat::READ_SHARE;
 use crate::job::notes::WARNING;
 use crate::planar::{Chords, chords};
-use crate::samples::{Curve, Drawing, Element, Level};
+use crate::samples::{Area, CloneBox, Curve, Drawing, Element, Level};
 
 /// Strokes that run beside each other nearer than this part of the narrower pen lie upon each other.
 const UPON: f64 = 0.25;
@@ -39,46 +40,86 @@ pub(super) fn read(
     Ok((drawing, linework))
 }
 
-/// Strokes and shapes that are there already, as wide as they are drawn, where their file has them.
-///
-/// # Errors
-/// As [`Linework::read`]; and [`JobError::Option`] for a file without strokes, and for strokes that lie upon each other.
-pub(super) fn read_kept(file: &Path, chord_mm: f64) -> Result<(Drawing, Linework), JobError> {
-    let (drawing, linework) = read(file, chord_mm, None)?;
-    let refuse =
-        |found: String, wanted| Err(refused("--keep", format!("{}: {found}", file.display()), wanted));
-    if drawing.curves.is_empty() {
-        return refuse(
-            "there is no stroke in it".to_owned(),
-            "draw what is to stay as strokes without a fill",
-        );
-    }
-    if let Some((first, second, at)) = upon_each_other(&drawing.curves) {
-        let found = format!(
-            "strokes {} and {} lie upon each other at ({:.2}, {:.2}) mm, so that it is unclear how paths go on there",
-            first + 1,
-            second + 1,
-            at.x,
-            at.y
-        );
-        return refuse(
-            found,
-            "delete one of them, or move them apart; strokes may cross and end on each other",
-        );
-    }
-    Ok((drawing, linework))
+/// What is there already, in the coordinates of its page.
+pub(super) struct Kept {
+    /// Its strokes, from which the pattern goes on, and its shapes.
+    pub(super) drawing: Drawing,
+    /// All that it covers, as it is drawn: strokes with their own ends and corners.
+    pub(super) ink: Drawing,
+    /// The file.
+    pub(super) linework: Linework,
 }
 
-/// Lower left and upper right corner of the ink of a drawing, in millimetres; `None` if there is none.
-pub(super) fn ink_bounds_mm(drawing: &Drawing) -> Option<(DVec2, DVec2)> {
-    let of_curve = |curve: &Curve| {
-        let (bounds, half_mm) = (curve.path.bounding_box(), 0.5 * curve.width_mm);
-        [DVec2::new(bounds.x0, bounds.y0) - half_mm, DVec2::new(bounds.x1, bounds.y1) + half_mm]
+impl Kept {
+    /// Strokes and shapes where their file has them.
+    ///
+    /// # Errors
+    /// As [`Linework::read`]; and [`JobError::Option`] for strokes that lie upon each other.
+    pub(super) fn read(file: &Path, chord_mm: f64) -> Result<Self, JobError> {
+        let (drawing, linework) = read(file, chord_mm, None)?;
+        if let Some((first, second, at)) = upon_each_other(&drawing.curves) {
+            let found = format!(
+                "{}: strokes {} and {} lie upon each other at ({:.2}, {:.2}) mm, so that it is unclear how paths go on there",
+                file.display(),
+                first + 1,
+                second + 1,
+                at.x,
+                at.y
+            );
+            return Err(refused(
+                "--keep",
+                found,
+                "delete one of them, or move them apart; strokes may cross and end on each other",
+            ));
+        }
+        let strokes = Element { contours: linework.stroke_ink().to_vec() };
+        let strokes = Some(strokes).filter(|strokes| !strokes.contours.is_empty());
+        let elements = strokes.into_iter().chain(drawing.elements.iter().cloned()).collect();
+        Ok(Self { drawing, ink: Drawing { curves: Vec::new(), elements }, linework })
+    }
+
+    /// It elsewhere.
+    pub(super) fn moved(&self, by: DVec2) -> Self {
+        let Self { drawing, ink, linework } = self;
+        Self { drawing: moved(drawing, by), ink: moved(ink, by), linework: linework.clone() }
+    }
+
+    /// Lower left and upper right corner of its ink, in millimetres.
+    pub(super) fn bounds_mm(&self) -> Option<(DVec2, DVec2)> {
+        self.ink.bounds_mm()
+    }
+}
+
+/// Refuses a copy of what is not on the exemplar's page, which is as large as `page_mm`, nor near its lines.
+pub(super) fn check_clones(clones: &[CloneSpec], exemplar: &Drawing, page_mm: DVec2) -> Result<(), JobError> {
+    let (low, high) = exemplar.bounds_mm().unwrap_or_default();
+    let (low, high) = (low.min(DVec2::ZERO), high.max(page_mm));
+    let is_on_page = |clone: &&CloneSpec| {
+        clone.from_mm.cmpge(low).all() && (clone.from_mm + clone.size_mm).cmple(high).all()
     };
-    let elements = drawing.elements.iter().flat_map(|element| element.contours.iter().flatten().copied());
-    let mut points = drawing.curves.iter().flat_map(of_curve).chain(elements);
-    let first = points.next()?;
-    Some(points.fold((first, first), |(low, high), p| (low.min(p), high.max(p))))
+    match clones.iter().find(|clone| !is_on_page(clone)) {
+        None => Ok(()),
+        Some(clone) => {
+            let (from, to) = (clone.from_mm, clone.from_mm + clone.size_mm);
+            let found = format!(
+                "the box from ({:.2}, {:.2}) to ({:.2}, {:.2}) mm reaches beyond the exemplar, which lies from ({:.2}, {:.2}) to ({:.2}, {:.2}) mm",
+                from.x, from.y, to.x, to.y, low.x, low.y, high.x, high.y
+            );
+            Err(refused("--clone", found, "copy from a box of the exemplar"))
+        }
+    }
+}
+
+/// A note on copies that are not wholly in the area, half a pen beside which they are cut.
+pub(super) fn cut_clones(clones: &[CloneBox], area: &Area, pen_mm: f64) -> Option<String> {
+    let is_cut = |clone: &&CloneBox| {
+        let half_mm = (clone.half_mm - pen_mm).max(DVec2::ZERO);
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        !area.covers_all(&[corners.map(|(x, y)| clone.to_mm + half_mm * DVec2::new(x, y)).to_vec()])
+    };
+    let cut = clones.iter().filter(is_cut).count();
+    (cut > 0)
+        .then(|| format!("{cut} of {} copies reach beyond the domain and are cut off there", clones.len()))
 }
 
 /// The first two strokes that run upon each other, by their numbers from 0, and where.

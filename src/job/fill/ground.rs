@@ -14,6 +14,7 @@ use crate::domain::{BandMap, CurveSpec, FillDomain};
 use crate::exemplar::{Limits, read_area};
 use crate::job::band::read_curve;
 use crate::job::error::JobError;
+use crate::job::notes::WARNING;
 use crate::job::part::MARGIN_MM;
 use crate::job::report::InputReport;
 use crate::planar::{Chords, EdgeIndex, FillRule, Grid, GridError, GridPoint, Part, Region, chords};
@@ -212,6 +213,7 @@ impl Ground {
     pub(super) fn kept(&self, drawing: &Drawing, chord_mm: f64) -> Result<Region, JobError> {
         let inked = |drawing: &Drawing| samples::inked(drawing, self.grid(), chord_mm).map_err(grid_error);
         match &self.strip {
+            _ if drawing.elements.is_empty() => Ok(Region::empty(self.grid())),
             None => inked(drawing),
             Some(Strip::Open { .. }) => Ok(Region::empty(self.grid())),
             Some(Strip::Along { .. }) => Ok(self.clipped(&inked(&self.laid(drawing, chord_mm))?)),
@@ -286,17 +288,36 @@ impl Ground {
             return domain.clone();
         }
         let index = EdgeIndex::new(domain);
-        let way_mm = |part: &Part| {
-            let points = part.exterior().points().iter().map(|&p| grid.to_mm(p));
-            let ways = points.map(|p| index.nearest(p).map_or(0.0, |edge| edge.nearest(p).distance(p)));
-            ways.fold(f64::INFINITY, f64::min)
-        };
-        let reach_mm = beside.parts().iter().map(way_mm).fold(0.0, f64::max) + ROOM_PENS * pen_mm;
+        let reach_mm = beside.parts().iter().map(|part| self.way_mm(part, &index)).fold(0.0, f64::max)
+            + ROOM_PENS * pen_mm;
         let around = beside.offset(reach_mm, 0.1 * reach_mm);
         let outlines: Vec<Vec<GridPoint>> =
             domain.parts().iter().map(|part| part.exterior().points().to_vec()).collect();
         let holes = Region::fill(grid, &outlines, FillRule::Positive).without(domain);
         Region::union(grid, [&Region::union(grid, [domain, &around]).without(&holes), kept])
+    }
+
+    /// A warning of what is kept so far from the domain that the pattern, whose neighbourhoods reach so far, knows nothing of it.
+    pub(super) fn far_away(&self, kept: &Region, reach_mm: f64) -> Option<String> {
+        let index = EdgeIndex::new(&self.domain);
+        let way_mm = |part: &Part| self.way_mm(part, &index);
+        let beside = kept
+            .parts()
+            .iter()
+            .filter(|part| !self.domain.parts().iter().any(|d| d.covers(part.exterior().points()[0])));
+        let ways: Vec<f64> = beside.map(way_mm).filter(|&mm| mm > reach_mm).collect();
+        let farthest_mm = ways.iter().copied().reduce(f64::max)?;
+        Some(format!(
+            "{WARNING}{} component(s) of --keep lie beside the domain, up to {farthest_mm:.1} mm away, where no neighbourhood of {reach_mm:.1} mm sees them: the pattern does not go on from them, and only bridges reach them; draw them nearer",
+            ways.len()
+        ))
+    }
+
+    /// How far a part is from the border of the domain, at the nearest.
+    fn way_mm(&self, part: &Part, border: &EdgeIndex) -> f64 {
+        let points = part.exterior().points().iter().map(|&p| self.grid().to_mm(p));
+        let ways = points.map(|p| border.nearest(p).map_or(0.0, |edge| edge.nearest(p).distance(p)));
+        ways.fold(f64::INFINITY, f64::min)
     }
 
     /// The ink that is inside of the domain.

@@ -23,7 +23,8 @@ use glam::DVec2;
 use self::builder::refused;
 use self::census::{density_inside, density_of};
 use self::engine::Pattern;
-use self::ground::{Ground, ROUNDING_MM2, grid_error, moved};
+use self::given::Kept;
+use self::ground::{Ground, ROUNDING_MM2, grid_error};
 use self::sheet::Sheet;
 use super::bridging::{self, BridgesReport};
 use super::error::JobError;
@@ -99,35 +100,50 @@ impl Fill {
         let read = clock.time(Stage::Read, || given::read(&options.exemplar, chord_mm, options.stroke_mm));
         let (exemplar, linework) = read?;
         let mut notes = linework.notes().to_vec();
+        notes.extend(linework.lost().map(str::to_owned));
         notes.extend(sheet.iter().flat_map(|sheet| &sheet.notes).cloned());
         let pens_mm = exemplar.curves.iter().map(|curve| curve.width_mm);
         let pen_mm = pens_mm.fold(options.frame_mm.unwrap_or(0.0), f64::max);
         let mut ground = clock.time(Stage::Read, || Ground::new(job, sheet.as_ref(), pen_mm))?;
-        let mut given = Given::default();
         let mut kept = None;
         if let Some(file) = &options.keep {
-            let (drawing, linework) = clock.time(Stage::Read, || given::read_kept(file, chord_mm))?;
-            given.drawing = moved(&drawing, ground.shift_mm);
-            if let Some(bounds_mm) = given::ink_bounds_mm(&given.drawing) {
-                let (with_room, by) = ground.with_room_for(bounds_mm, pen_mm, chord_mm)?;
-                (ground, given.drawing) = (with_room, moved(&given.drawing, by));
-            }
-            notes.extend_from_slice(linework.notes());
-            kept =
-                Some(InputReport { file: file.display().to_string(), sha256: linework.sha256().to_owned() });
+            let read = clock.time(Stage::Read, || Kept::read(file, chord_mm))?.moved(ground.shift_mm);
+            let bounds_mm = read.bounds_mm().unwrap_or_default();
+            let (with_room, by) = ground.with_room_for(bounds_mm, pen_mm, chord_mm)?;
+            (ground, kept) = (with_room, Some(read.moved(by)));
         }
-        given.clones = options.clones.iter().map(|clone| clone.placed(ground.shift_mm)).collect();
+        given::check_clones(&options.clones, &exemplar, DVec2::from(linework.page_mm()))?;
+        let [kept_lines, kept_drawn] = match &kept {
+            Some(kept) => [kept.drawing.clone(), kept.ink.clone()],
+            None => [Drawing::default(), Drawing::default()],
+        };
+        let given = Given {
+            drawing: kept_lines.clone(),
+            clones: options.clones.iter().map(|clone| clone.placed(ground.shift_mm)).collect(),
+        };
+        notes.extend(given::cut_clones(&given.clones, &ground.area, pen_mm));
         let (learnt, side_mm) = density_of(&options.exemplar, &exemplar, &linework, chord_mm)?;
         let constants = job.constants(&exemplar, &ground.area);
         notes.extend(given::oversize(&exemplar, &constants.levels));
         let domain_mm2 = ground.domain.area_mm2();
         let ends_wanted = (learnt.dangling_ends * domain_mm2 / census::AREA_MM2).round() as usize;
-        let pattern =
-            engine::pattern((job, &constants), &exemplar, &ground, &given, ends_wanted, &mut clock)?;
+        let pattern = engine::pattern(
+            (job, &constants),
+            &exemplar,
+            &ground,
+            (&given, &kept_drawn),
+            ends_wanted,
+            &mut clock,
+        )?;
         let Pattern { drawing, region, own, changes, levels, lacking } = pattern;
-        let (drawing, region, cut_mm) =
-            clock.time(Stage::Map, || laid(&ground, drawing, region, chord_mm))?;
-        let kept_ink = ground.kept(&given.drawing, INK_SHARE * chord_mm)?;
+        let (drawing, region, cut_mm) = clock
+            .time(Stage::Map, || laid(&ground, &drawing, [&kept_lines, &kept_drawn], region, chord_mm))?;
+        let kept_ink = ground.kept(&kept_drawn, INK_SHARE * chord_mm)?;
+        if let Some(kept) = &kept {
+            let reach_mm = constants.levels.iter().map(|level| level.radius_mm).fold(0.0, f64::max);
+            notes.extend_from_slice(kept.linework.notes());
+            notes.extend(ground.far_away(&kept_ink, reach_mm));
+        }
         let region = match kept_ink.is_empty() {
             true => region,
             false => Region::union(region.grid(), [&region, &kept_ink]),
@@ -141,7 +157,10 @@ impl Fill {
                 sha256: linework.sha256().to_owned(),
             },
             domain_file: ground.input.clone(),
-            kept,
+            kept: kept.as_ref().zip(options.keep.as_ref()).map(|(kept, file)| InputReport {
+                file: file.display().to_string(),
+                sha256: kept.linework.sha256().to_owned(),
+            }),
             domain_mm2,
             pen_mm,
             densities: [learnt, density],
@@ -265,7 +284,7 @@ impl Fill {
 
     /// Draws what is kept again where a bridge or a slit changed it.
     fn keep(&mut self, kept: &Region) -> Result<(), JobError> {
-        if kept.without(&self.region).is_empty() {
+        if kept.without(&self.region).area_mm2() < ROUNDING_MM2 {
             return Ok(());
         }
         self.region = Region::union(self.region.grid(), [&self.region, kept]);
@@ -387,22 +406,25 @@ impl Fill {
     }
 }
 
-/// A pattern on its page and its ink inside of the domain; and where along its curve a closed strip was cut open.
+/// A pattern with what is kept, as lines and as drawn, on its page, and its ink inside of the domain; and where along its curve a closed strip was
+/// cut open.
 fn laid(
     ground: &Ground,
-    drawing: Drawing,
+    pattern: &Drawing,
+    [kept_lines, kept_drawn]: [&Drawing; 2],
     region: Region,
     chord_mm: f64,
 ) -> Result<(Drawing, Region, f64), JobError> {
     let grid = ground.grid();
+    let drawing = ground.laid(&pattern.with(kept_lines), chord_mm);
     if !ground.is_strip() {
         // On one grid with the domain; the ink that was counted, not drawn again.
         let ink =
             if region.grid() == grid { region } else { region.placed(grid, |p| p).map_err(grid_error)? };
         return Ok((drawing, ground.clipped(&ink), 0.0));
     }
-    let drawing = ground.laid(&drawing, chord_mm);
-    let ink = samples::inked(&drawing, grid, INK_SHARE * chord_mm).map_err(grid_error)?;
+    let drawn = ground.laid(&pattern.with(kept_drawn), chord_mm);
+    let ink = samples::inked(&drawn, grid, INK_SHARE * chord_mm).map_err(grid_error)?;
     let (ink, cut_mm) = ground.opened(&ink)?;
     Ok((drawing, ink, cut_mm))
 }

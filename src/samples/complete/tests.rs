@@ -189,7 +189,7 @@ fn a_ring_is_opened_before_it_is_parted() {
 #[test]
 fn given_strokes_stay() {
     let mut graph = net(4, 4, 1.0, &mut Dice(5));
-    graph.samples.iter_mut().for_each(|sample| sample.is_given = true);
+    graph.edges.iter_mut().for_each(|edge| edge.confidence = f64::INFINITY);
     let completing = CompleteOptions { joins_ends: false, ..CompleteOptions::default() };
     let refused =
         complete(&graph, &[], &area_of(4, 4), &Options::default(), &goal(None, Some(0)), &completing);

@@ -150,7 +150,7 @@ impl<'a> Work<'a> {
 
     /// Whether the maker gave both ends of an edge.
     pub fn is_given(&self, edge: usize) -> bool {
-        self.edges[edge].ends.iter().all(|&end| self.samples[end].is_given)
+        self.edges[edge].is_given()
     }
 
     /// The sample at a foot, new where there is none.
