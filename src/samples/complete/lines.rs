@@ -1,5 +1,7 @@
 //! The middle lines of all ink in a tree, to find what is near and whether a new stroke would run clear of it.
 
+use std::cmp::Ordering;
+
 use glam::DVec2;
 use kurbo::PathEl;
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
@@ -38,6 +40,14 @@ pub(super) struct Line {
 }
 
 impl Line {
+    /// An order that does not depend on how the lines were found.
+    fn order(&self, other: &Self) -> Ordering {
+        let places = |line: &Self| [line.span[0], line.from.x, line.from.y];
+        let by_place =
+            || places(self).iter().zip(places(other)).map(|(a, b)| a.total_cmp(&b)).find(|o| o.is_ne());
+        self.owner.cmp(&other.owner).then_with(|| by_place().unwrap_or(Ordering::Equal))
+    }
+
     /// The part of the way along the line at which it is nearest to `p`.
     fn nearest_part(&self, p: DVec2) -> f64 {
         let d = self.to - self.from;
@@ -159,21 +169,27 @@ impl Lines {
             .map(|line| (line.nearest(p).0.distance(p) - line.half_mm, line))
             .filter(|&(gap, _)| gap <= reach_mm)
             .collect();
-        let key = |line: &Line| (line.owner, line.span[0], line.from.x, line.from.y);
-        found.sort_by(|a, b| {
-            let (c, d) = (key(a.1), key(b.1));
-            (a.0.total_cmp(&b.0))
-                .then(c.0.cmp(&d.0))
-                .then(c.1.total_cmp(&d.1))
-                .then(c.2.total_cmp(&d.2))
-                .then(c.3.total_cmp(&d.3))
-        });
+        found.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.order(b.1)));
         found
     }
 
-    /// All lines, by how far their middles are from `p`, nearest first.
+    /// All lines, by how far their middles are from `p`, nearest first, and of those that are as far in the order of their owners.
     pub fn nearest_first(&self, p: DVec2) -> impl Iterator<Item = (f64, &Line)> {
-        self.tree.nearest_neighbor_iter(p.to_array()).map(move |line| (line.nearest(p).0.distance(p), line))
+        let lines = self.tree.nearest_neighbor_iter(p.to_array());
+        let mut lines = lines.map(move |line| (line.nearest(p).0.distance(p), line)).peekable();
+        // Those that are as far as one another, the last first: the tree has them as it was built.
+        let mut tied: Vec<(f64, &Line)> = Vec::new();
+        std::iter::from_fn(move || {
+            if tied.is_empty() {
+                let first = lines.next()?;
+                tied.push(first);
+                while let Some(next) = lines.next_if(|next| next.0 == first.0) {
+                    tied.push(next);
+                }
+                tied.sort_by(|a, b| b.1.order(a.1));
+            }
+            tied.pop()
+        })
     }
 
     /// Only the lines of some owners.

@@ -9,6 +9,8 @@
 //! the counts nearer; a batch that did not is tried in halves, down to the single change that is no use and is not tried again. So the
 //! distance to the goal falls with each round, and the work ends.
 
+#[cfg(test)]
+mod cases;
 mod cuts;
 mod frame;
 mod lines;

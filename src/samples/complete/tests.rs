@@ -11,7 +11,7 @@ use crate::samples::{Edge, Kind, Sample, inked};
 use crate::topology::Wanted;
 
 const CELL_MM: f64 = 6.0;
-const PEN_MM: f64 = 1.0;
+pub(super) const PEN_MM: f64 = 1.0;
 
 /// Numbers that are as good as random.
 struct Dice(u64);
@@ -24,7 +24,7 @@ impl Dice {
     }
 }
 
-fn sample(at: DVec2) -> Sample {
+pub(super) fn sample(at: DVec2) -> Sample {
     Sample {
         at,
         kind: Kind::Curve,
@@ -65,7 +65,7 @@ fn net(columns: usize, rows: usize, kept: f64, dice: &mut Dice) -> Graph {
     graph
 }
 
-fn area(width_mm: f64, height_mm: f64) -> Area {
+pub(super) fn area(width_mm: f64, height_mm: f64) -> Area {
     let grid = Grid::for_extent(400.0).unwrap();
     let corners = [(0.0, 0.0), (width_mm, 0.0), (width_mm, height_mm), (0.0, height_mm)];
     let path: Vec<GridPoint> = corners.iter().map(|&(x, y)| grid.snap(DVec2::new(x, y)).unwrap()).collect();
@@ -93,7 +93,7 @@ fn elements(count: usize, columns: usize, rows: usize, dice: &mut Dice) -> Vec<E
     (0..count).map(|_| element()).collect()
 }
 
-fn goal(components: Option<u32>, holes: Option<u32>) -> Goal {
+pub(super) fn goal(components: Option<u32>, holes: Option<u32>) -> Goal {
     Goal {
         components: components.map(Wanted::exactly),
         holes: holes.map(Wanted::exactly),
@@ -102,7 +102,7 @@ fn goal(components: Option<u32>, holes: Option<u32>) -> Goal {
 }
 
 /// Counts the drawing once more.
-fn check(completed: &Completed, goal: &Goal) {
+pub(super) fn check(completed: &Completed, goal: &Goal) {
     let region = inked(&completed.drawing, completed.region.grid(), 0.01).unwrap();
     assert_eq!(region, completed.region);
     assert_eq!((region.components(), region.holes()), (completed.components, completed.holes));

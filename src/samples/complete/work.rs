@@ -161,7 +161,8 @@ impl<'a> Work<'a> {
             Foot::Edge(edge, t) => match self.split.get(&edge) {
                 Some(&(before, [first, second])) => match t < before {
                     true => self.sample_at(Foot::Edge(first, t / before)),
-                    false => self.sample_at(Foot::Edge(second, (t - before) / (1.0 - before))),
+                    // Its curve comes back from the end.
+                    false => self.sample_at(Foot::Edge(second, (1.0 - t) / (1.0 - before))),
                 },
                 None => self.split(edge, t),
             },

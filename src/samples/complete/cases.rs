@@ -1,0 +1,49 @@
+//! Small drawings of what went wrong once, completed.
+
+use std::f64::consts::TAU;
+
+use glam::DVec2;
+
+use super::tests::{area, sample};
+use super::*;
+use crate::samples::Edge;
+
+/// A graph of strokes through places.
+fn strokes(lines: &[&[(f64, f64)]]) -> Graph {
+    let mut graph = Graph::default();
+    for line in lines {
+        let first = graph.samples.len();
+        graph.samples.extend(line.iter().map(|&(x, y)| sample(DVec2::new(x, y))));
+        let edge = |i| Edge { ends: [i, i + 1], confidence: 1.0, handles: [DVec2::ZERO; 2] };
+        graph.edges.extend((first..graph.samples.len() - 1).map(edge));
+    }
+    graph
+}
+
+#[test]
+fn an_edge_is_split_where_it_is_told_to_however_often_it_was_before() {
+    let graph = strokes(&[&[(0.0, 5.0), (32.0, 5.0)]]);
+    let (area, completing) = (area(60.0, 40.0), CompleteOptions::default());
+    let mut work = Work::new(&graph, &[], &area, &Options::default(), &completing);
+    for (t, x) in [(0.5, 16.0), (0.75, 24.0), (0.25, 8.0), (0.875, 28.0)] {
+        let at = work.sample_at(work::Foot::Edge(0, t));
+        assert!(work.samples[at].at.distance(DVec2::new(x, 5.0)) < 1e-9, "{t}: {}", work.samples[at].at);
+    }
+}
+
+#[test]
+fn lines_that_are_as_near_come_in_the_order_of_their_owners() {
+    let mut graph = strokes(&[&[(30.0, 20.0)]]);
+    for i in 0..24 {
+        graph
+            .samples
+            .push(sample(DVec2::new(30.0, 20.0) + 12.0 * DVec2::from_angle(TAU * f64::from(i * 7) / 24.0)));
+        graph.edges.push(Edge { ends: [0, i as usize + 1], confidence: 1.0, handles: [DVec2::ZERO; 2] });
+    }
+    let (area, completing) = (area(60.0, 40.0), CompleteOptions::default());
+    let work = Work::new(&graph, &[], &area, &Options::default(), &completing);
+    let lines = lines::Lines::new(&work);
+    let owners: Vec<_> =
+        lines.nearest_first(DVec2::new(30.0, 20.0)).take(24).map(|(_, line)| line.owner).collect();
+    assert_eq!(owners, (0..24).map(lines::Owner::Edge).collect::<Vec<_>>());
+}
