@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
-use super::tests::{area, sample};
+use super::tests::{area, check, goal, sample};
 use super::*;
 use crate::samples::Edge;
 
@@ -18,6 +18,41 @@ fn strokes(lines: &[&[(f64, f64)]]) -> Graph {
         graph.edges.extend((first..graph.samples.len() - 1).map(edge));
     }
     graph
+}
+
+/// Nothing is tidied before it is counted.
+fn untidied(frame_mm: Option<f64>) -> CompleteOptions {
+    CompleteOptions { joins_ends: false, removes_twigs: false, frame_mm, ..CompleteOptions::default() }
+}
+
+#[test]
+fn a_fork_that_stands_on_the_frame_is_opened() {
+    let mut graph = strokes(&[&[(20.0, 0.0), (30.0, 12.0), (40.0, 0.0)]]);
+    graph.samples.push(sample(DVec2::new(30.0, 22.0)));
+    graph.edges.push(Edge { ends: [1, 3], confidence: 1.0, handles: [DVec2::ZERO; 2] });
+    let goal = goal(Some(1), Some(1));
+    let completed =
+        complete(&graph, &[], &area(60.0, 40.0), &Options::default(), &goal, &untidied(Some(2.0)));
+    let completed = completed.unwrap();
+    check(&completed, &goal);
+    assert_eq!(completed.changes.iter().map(|change| change.kind).collect::<Vec<_>>(), [ChangeKind::Open]);
+}
+
+#[test]
+fn a_stroke_is_cut_between_the_faces_that_it_parts() {
+    // Four squares in a row, by two strokes between two rails that have no samples where they cross: each wall is one strand.
+    let rails: [&[(f64, f64)]; 6] = [
+        &[(4.0, 10.0), (56.0, 10.0)],
+        &[(4.0, 20.0), (56.0, 20.0)],
+        &[(4.0, 30.0), (56.0, 30.0)],
+        &[(10.0, 4.0), (10.0, 15.0), (10.0, 25.0), (10.0, 36.0)],
+        &[(30.0, 4.0), (30.0, 15.0), (30.0, 25.0), (30.0, 36.0)],
+        &[(50.0, 4.0), (50.0, 15.0), (50.0, 25.0), (50.0, 36.0)],
+    ];
+    let graph = strokes(&rails);
+    let goal = goal(Some(1), Some(1));
+    let completed = complete(&graph, &[], &area(60.0, 40.0), &Options::default(), &goal, &untidied(None));
+    check(&completed.unwrap(), &goal);
 }
 
 #[test]

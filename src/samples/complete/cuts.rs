@@ -27,6 +27,8 @@ struct Strand {
 
 /// Edges of a strand that may be taken away, and the faces to either side.
 struct Cut {
+    /// The number of the strand.
+    strand: usize,
     edges: Vec<usize>,
     confidence: f64,
     faces: [usize; 2],
@@ -37,14 +39,20 @@ impl Planner<'_, '_> {
     pub fn openings(&self, needed: usize) -> Vec<Step> {
         let mut sets = Sets::new(self.scene.region.holes() + 1);
         let mut steps = Vec::new();
+        // Each cut was judged by what the others leave of its strand, so there is one of each at a time.
+        let mut is_cut = BTreeSet::new();
         for cut in self.cuts() {
             let [a, b] = cut.faces.map(|face| sets.find(face));
-            if a == b || steps.len() == needed || self.would_open_ring(&mut sets, [a, b]) {
+            if a == b || steps.len() == needed || is_cut.contains(&cut.strand) {
+                continue;
+            }
+            if self.would_open_ring(&mut sets, [a, b]) {
                 continue;
             }
             let step = Step::remove(ChangeKind::Open, cut.edges, &self.scene.work);
             if !(self.is_banned)(&step) {
                 sets.join(a, b);
+                is_cut.insert(cut.strand);
                 steps.push(step);
             }
         }
@@ -62,8 +70,10 @@ impl Planner<'_, '_> {
     /// Up to `needed` steps of which each makes two components of one.
     pub fn partings(&self, needed: usize) -> Vec<Step> {
         let cuts = self.cuts().into_iter().filter(|cut| cut.faces[0] == cut.faces[1]);
-        let steps = cuts.map(|cut| Step::remove(ChangeKind::Part, cut.edges, &self.scene.work));
-        steps.filter(|step| !(self.is_banned)(step)).take(needed).collect()
+        let step = |cut: Cut| (cut.strand, Step::remove(ChangeKind::Part, cut.edges, &self.scene.work));
+        let steps = cuts.map(step).filter(|(_, step)| !(self.is_banned)(step));
+        let mut is_cut = BTreeSet::new();
+        steps.filter(|&(strand, _)| is_cut.insert(strand)).map(|(_, step)| step).take(needed).collect()
     }
 
     /// A step that opens a hole where after it the fewest more would have to be opened to part the component: what two faces share
@@ -100,27 +110,31 @@ impl Planner<'_, '_> {
         best.map(|(_, step)| step)
     }
 
-    /// One cut for each strand that has a face on either side, those of least confidence first.
+    /// One cut for each strand and each two faces that it has on its sides, those of least confidence first.
     fn cuts(&self) -> Vec<Cut> {
-        let mut cuts: Vec<Cut> = strands(self.scene).iter().filter_map(|strand| self.cut(strand)).collect();
+        let strands = strands(self.scene);
+        let mut cuts: Vec<Cut> =
+            strands.iter().enumerate().flat_map(|(i, strand)| self.cuts_of(i, strand)).collect();
         // Where nothing is known of them, in an order that does not begin in one corner.
         let scattered = |cut: &Cut| (cut.edges[0] as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         cuts.sort_by(|a, b| a.confidence.total_cmp(&b.confidence).then(scattered(a).cmp(&scattered(b))));
         cuts
     }
 
-    fn cut(&self, strand: &Strand) -> Option<Cut> {
+    fn cuts_of(&self, number: usize, strand: &Strand) -> Vec<Cut> {
         let (scene, work) = (self.scene, &self.scene.work);
         if strand.edges.iter().any(|&edge| work.is_given(edge)) {
-            return None;
+            return Vec::new();
         }
-        let faces = strand.edges.iter().find_map(|&edge| faces(scene, edge))?;
         let length =
             |range: Range<usize>| strand.edges[range].iter().map(|&edge| work.length_mm(edge)).sum::<f64>();
         let count = strand.edges.len();
-        let is_held =
-            [strand.samples[0], strand.samples[count]].map(|sample| scene.by_sample[sample].len() > 1);
-        let is_loop = strand.samples[0] == strand.samples[count];
+        let ends = [strand.samples[0], strand.samples[count]];
+        // Other ink holds an end as well as another edge does: the frame, an element, a stroke that passes there.
+        let holding = ends.map(|end| scene.ink_at(end));
+        let is_held: Vec<bool> =
+            (0..2).map(|side| scene.by_sample[ends[side]].len() > 1 || !holding[side].is_empty()).collect();
+        let is_loop = ends[0] == ends[1];
         // What is left at an end in the open is a component by itself, and may not be a crumb.
         let leaves_no_crumb = |range: &Range<usize>| {
             let remains = [length(0..range.start), length(range.end..count)];
@@ -128,16 +142,25 @@ impl Planner<'_, '_> {
         };
         let is_whole =
             is_held == [true; 2] && !is_loop && length(0..count) < WHOLE_SPACINGS * scene.spacing_mm;
-        let range = match is_whole {
-            true => 0..count,
-            false => self.gaps(strand).find(leaves_no_crumb)?,
+        let ranges: Vec<Range<usize>> = match is_whole {
+            true => std::iter::once(0..count).collect(),
+            false => self.gaps(strand).filter(leaves_no_crumb).collect(),
         };
-        let edges = strand.edges[range].to_vec();
-        if !self.is_bold && edges.iter().any(|&edge| self.is_touched(edge, strand)) {
-            return None;
+        let mut cuts: Vec<Cut> = Vec::new();
+        for range in ranges {
+            let edges = strand.edges[range].to_vec();
+            let Some(faces) = edges.iter().find_map(|&edge| faces(scene, edge)) else { continue };
+            let is_known = |cut: &Cut| cut.faces == faces || cut.faces == [faces[1], faces[0]];
+            if cuts.iter().any(is_known)
+                || !self.is_bold && edges.iter().any(|&edge| self.is_touched(edge, strand, &holding))
+            {
+                continue;
+            }
+            let confidence =
+                edges.iter().map(|&edge| work.edges[edge].confidence).fold(f64::INFINITY, f64::min);
+            cuts.push(Cut { strand: number, edges, confidence, faces });
         }
-        let confidence = edges.iter().map(|&edge| work.edges[edge].confidence).fold(f64::INFINITY, f64::min);
-        Some(Cut { edges, confidence, faces })
+        cuts
     }
 
     /// Around each edge, the least confident first, as many as leave a gap that is seen as one; all if there are no more.
@@ -165,13 +188,14 @@ impl Planner<'_, '_> {
         })
     }
 
-    /// Whether ink lies at an edge that is not of its own path: it would be left in the gap, or hangs on to it.
-    fn is_touched(&self, edge: usize, strand: &Strand) -> bool {
+    /// Whether ink lies at an edge that is not of its own path, nor what holds the ends of that: it would be left in the gap, or hangs on to it.
+    fn is_touched(&self, edge: usize, strand: &Strand, holding: &[Vec<Owner>; 2]) -> bool {
         let (scene, work) = (self.scene, &self.scene.work);
         let own =
             strand.samples.iter().flat_map(|&sample| scene.own(super::work::Foot::Sample(sample), None));
         let mut own: Vec<Owner> = own.collect();
         own.extend(strand.edges.iter().map(|&edge| Owner::Edge(edge)));
+        own.extend(holding.iter().flatten());
         let cubic = work.cubic(edge);
         [0.2, 0.4, 0.6, 0.8].into_iter().any(|t| {
             let near = scene.lines.near(point_at(&cubic, t), work.width_mm(edge) / 2.0);

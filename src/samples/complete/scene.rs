@@ -142,9 +142,15 @@ impl<'a> Scene<'a> {
     /// The edge of a path that ends at a sample in the open: neither another edge nor other ink is there.
     pub fn free_end(&self, sample: usize) -> Option<usize> {
         let [edge] = self.by_sample[sample][..] else { return None };
+        self.ink_at(sample).is_empty().then_some(edge)
+    }
+
+    /// Whose ink the pen touches at a sample, of what is not of its own path.
+    pub fn ink_at(&self, sample: usize) -> Vec<Owner> {
+        let Some(&edge) = self.by_sample[sample].first() else { return Vec::new() };
         let own = self.own(Foot::Sample(sample), None);
         let near = self.lines.near(self.work.samples[sample].at, self.work.width_mm(edge) / 2.0);
-        near.iter().all(|(_, line)| own.contains(&line.owner)).then_some(edge)
+        near.into_iter().map(|(_, line)| line.owner).filter(|owner| !own.contains(owner)).collect()
     }
 
     /// The ends of paths that end in the open, with their edges.
