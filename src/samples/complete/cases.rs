@@ -4,8 +4,9 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
-use super::tests::{area, check, goal, sample};
+use super::tests::{PEN_MM, area, check, goal, sample};
 use super::*;
+use crate::planar::{FillRule, Grid, GridPoint};
 use crate::samples::Edge;
 
 /// A graph of strokes through places.
@@ -18,6 +19,14 @@ fn strokes(lines: &[&[(f64, f64)]]) -> Graph {
         graph.edges.extend((first..graph.samples.len() - 1).map(edge));
     }
     graph
+}
+
+fn area_of_paths(paths: &[&[(f64, f64)]]) -> Area {
+    let grid = Grid::for_extent(400.0).unwrap();
+    let path =
+        |path: &&[(f64, f64)]| path.iter().map(|&(x, y)| grid.snap(DVec2::new(x, y)).unwrap()).collect();
+    let paths: Vec<Vec<GridPoint>> = paths.iter().map(path).collect();
+    Area::new(Region::fill(grid, &paths, FillRule::EvenOdd))
 }
 
 /// Nothing is tidied before it is counted.
@@ -53,6 +62,57 @@ fn a_stroke_is_cut_between_the_faces_that_it_parts() {
     let goal = goal(Some(1), Some(1));
     let completed = complete(&graph, &[], &area(60.0, 40.0), &Options::default(), &goal, &untidied(None));
     check(&completed.unwrap(), &goal);
+}
+
+#[test]
+fn a_way_through_a_neck_is_found_round_its_corners() {
+    let neck: &[(f64, f64)] = &[
+        (0.0, 0.0),
+        (30.0, 0.0),
+        (30.0, 30.0),
+        (50.0, 30.0),
+        (50.0, 0.0),
+        (80.0, 0.0),
+        (80.0, 40.0),
+        (50.0, 40.0),
+        (50.0, 31.0),
+        (30.0, 31.0),
+        (30.0, 40.0),
+        (0.0, 40.0),
+    ];
+    let area = area_of_paths(&[neck]);
+    let graph = strokes(&[&[(10.0, 5.0), (20.0, 5.0)], &[(60.0, 5.0), (70.0, 5.0)]]);
+    let goal = goal(Some(1), Some(0));
+    let completed = complete(&graph, &[], &area, &Options::default(), &goal, &untidied(None)).unwrap();
+    check(&completed, &goal);
+    assert_eq!(completed.changes.iter().map(|change| change.kind).collect::<Vec<_>>(), [ChangeKind::Bridge]);
+    assert!(completed.region.without(area.grown(0.5 * PEN_MM).region()).area_mm2() < 0.01);
+}
+
+#[test]
+fn what_the_area_makes_impossible_is_named() {
+    let square = |x: f64| [(x, 0.0), (x + 30.0, 0.0), (x + 30.0, 30.0), (x, 30.0)];
+    let islands = area_of_paths(&[&square(0.0), &square(40.0)]);
+    let graph = strokes(&[&[(5.0, 15.0), (25.0, 15.0)], &[(45.0, 15.0), (65.0, 15.0)]]);
+    let refusal = |area: &Area, wanted: Goal, frame_mm: Option<f64>| {
+        complete(&graph, &[], area, &Options::default(), &wanted, &untidied(frame_mm))
+            .unwrap_err()
+            .to_string()
+    };
+    let told = refusal(&islands, goal(Some(1), None), None);
+    assert!(
+        told.contains("the area lies in 2 pieces") && told.contains("ask for 2 components or more"),
+        "{told}"
+    );
+    let holed = area_of_paths(&[
+        &[(0.0, 0.0), (70.0, 0.0), (70.0, 30.0), (0.0, 30.0)],
+        &[(32.0, 12.0), (38.0, 12.0), (38.0, 18.0), (32.0, 18.0)],
+    ]);
+    let told = refusal(&holed, goal(None, Some(0)), Some(1.5));
+    assert!(
+        told.contains("each of its 2 loops is a hole") && told.contains("ask for 2 holes or more"),
+        "{told}"
+    );
 }
 
 #[test]

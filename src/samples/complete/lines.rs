@@ -11,7 +11,7 @@ use crate::samples::Element;
 use crate::samples::cubic::{Cubic, point_at};
 
 /// Chords of an edge.
-const CHORDS: u32 = 8;
+pub(super) const CHORDS: u32 = 8;
 
 /// A stroke that is within reach of the ink it comes from for more than so many pens runs alongside of it, with a slit between.
 const MOST_ALONGSIDE: f64 = 2.5;

@@ -6,7 +6,7 @@ use glam::DVec2;
 use kurbo::{ParamCurve, ParamCurveArclen};
 
 use super::ChangeKind;
-use super::lines::{Line, Lines, Owner, Run};
+use super::lines::{CHORDS, Line, Lines, Owner, Run};
 use super::scene::Scene;
 use super::step::{Link, Port, SMOOTH, Step};
 use super::work::Foot;
@@ -84,7 +84,8 @@ impl Planner<'_, '_> {
             }
         }
         for doubling in 0..=DOUBLINGS {
-            for ([p, q], link) in self.between_parts(doubling, &mut sets) {
+            let (links, is_all) = self.between_parts(doubling, &mut sets);
+            for ([p, q], link) in links {
                 if steps.len() == needed {
                     return steps;
                 }
@@ -106,6 +107,12 @@ impl Planner<'_, '_> {
                     }
                 }
             }
+            if is_all {
+                break;
+            }
+        }
+        if self.is_bold {
+            steps.extend(self.roads(needed - steps.len(), &mut sets));
         }
         steps
     }
@@ -197,8 +204,8 @@ impl Planner<'_, '_> {
     }
 
     /// Links within a reach that was doubled so often, between parts that are not in one set yet, the cheapest first. With each doubling more
-    /// are given.
-    fn between_parts(&self, doubling: u32, sets: &mut Sets) -> Vec<([usize; 2], Link)> {
+    /// are given, until these are all: that is told with them.
+    fn between_parts(&self, doubling: u32, sets: &mut Sets) -> (Vec<([usize; 2], Link)>, bool) {
         let reach_mm = FIRST_REACH_SPACINGS * self.scene.spacing_mm * f64::from(1 << doubling);
         let [most, per_pair] = [PER_PLACE, PER_PAIR].map(|count| count << doubling);
         let mut found: BTreeMap<[usize; 2], Vec<(f64, Link)>> = BTreeMap::new();
@@ -206,8 +213,11 @@ impl Planner<'_, '_> {
         let sizes = self.sizes(&set_of);
         let largest = self.largest_set(&set_of, &sizes);
         if set_of.iter().all(|&set| set == largest) {
-            return Vec::new();
+            return (Vec::new(), true);
         }
+        // For each set, how many parts are not in it.
+        let mut others = vec![set_of.len(); set_of.len()];
+        set_of.iter().for_each(|&set| others[set] -= 1);
         // From within a large set nearly all that is near is its own.
         let outside_of = |set: usize| {
             self.scene.lines.only(|owner| self.scene.part(owner).is_some_and(|part| set_of[part] != set))
@@ -226,17 +236,22 @@ impl Planner<'_, '_> {
                 if set_of[other] == set_of[part] || seen.contains(&other) {
                     continue;
                 }
-                if seen.len() == most {
-                    break;
-                }
                 seen.push(other);
                 let link = Link::smooth(self.scene, &port, &self.landing(line, port.at));
                 if link.is_inside(self.scene) {
                     let pair = [part.min(other), part.max(other)];
                     found.entry(pair).or_default().push((link.cost(self.scene), link));
                 }
+                // All that is farther is of those that were seen.
+                if seen.len() == most.min(others[set_of[part]]) {
+                    break;
+                }
             }
         }
+        let (low, high) = self.scene.work.area.bounds_mm();
+        let is_all = reach_mm > low.distance(high)
+            && most >= set_of.len()
+            && found.values().all(|candidates| candidates.len() <= per_pair);
         let mut links: Vec<(f64, [usize; 2], Link)> = Vec::new();
         for (pair, mut candidates) in found {
             candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -245,7 +260,7 @@ impl Planner<'_, '_> {
             links.extend(settled.map(|(cost, link)| (cost, pair, link)));
         }
         links.sort_by(|a, b| a.0.total_cmp(&b.0));
-        links.into_iter().map(|(_, pair, link)| (pair, link)).collect()
+        (links.into_iter().map(|(_, pair, link)| (pair, link)).collect(), is_all)
     }
 
     /// A link with its cost, after its ends on the sides of ink have moved to where it is shortest, if it is cheaper there.
@@ -318,12 +333,18 @@ impl Planner<'_, '_> {
         (1..sizes.len()).fold(0, |best, i| if sizes[i] > sizes[best] { i } else { best })
     }
 
-    /// How many edges each set of parts has.
+    /// How many edges each set of parts has, with outlines of elements by as many lines as edges have.
     fn sizes(&self, set_of: &[usize]) -> Vec<usize> {
         let mut sizes = vec![0; set_of.len()];
         for edge in self.scene.work.present() {
             if let Some(part) = self.scene.part(Owner::Edge(edge)) {
                 sizes[set_of[part]] += 1;
+            }
+        }
+        let contours = self.scene.work.elements.iter().flat_map(|element| &element.contours);
+        for (number, contour) in contours.enumerate() {
+            if let Some(part) = self.scene.part(Owner::Contour(number)) {
+                sizes[set_of[part]] += contour.len().div_ceil(CHORDS as usize);
             }
         }
         sizes
@@ -371,7 +392,7 @@ impl Planner<'_, '_> {
     }
 
     /// The place of a line that is nearest to `p`.
-    fn landing(&self, line: &Line, p: DVec2) -> Port {
+    pub(super) fn landing(&self, line: &Line, p: DVec2) -> Port {
         let work = &self.scene.work;
         let (at, t) = line.nearest(p);
         let inked = |at: DVec2| Port { foot: Foot::Ink(at), at, owner: Some(line.owner), onward: None };

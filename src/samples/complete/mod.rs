@@ -16,6 +16,7 @@ mod frame;
 mod lines;
 mod links;
 mod places;
+mod roads;
 mod scene;
 mod slits;
 mod step;
@@ -155,8 +156,8 @@ pub enum CompleteError {
     NotMet {
         /// What was wanted, in words.
         wanted: String,
-        /// What would work.
-        remedy: &'static str,
+        /// The reason, where one is known, and what would work.
+        remedy: String,
         /// The pattern that came nearest.
         nearest: Box<Completed>,
     },
@@ -204,10 +205,11 @@ impl<'a> Completion<'a> {
     fn tidied(&mut self, scene: Scene<'a>) -> Result<Scene<'a>, CompleteError> {
         let mut steps = tidy::tidied(&scene);
         steps.extend(slits::filled(&scene));
-        if steps.is_empty() {
-            return Ok(scene);
-        }
-        let mut work = scene.work;
+        Ok(if steps.is_empty() { scene } else { self.carried_out(scene.work, &steps)? })
+    }
+
+    /// The pattern with these steps, whatever they do to its counts.
+    fn carried_out(&mut self, mut work: Work<'a>, steps: &[Step]) -> Result<Scene<'a>, CompleteError> {
         self.changes.extend(steps.iter().filter(|step| step.carry_out(&mut work)).map(|step| step.change));
         Ok(Scene::new(work)?)
     }
@@ -223,13 +225,14 @@ impl<'a> Completion<'a> {
             let steps = self.planned(&scene, is_bold);
             let (next, has_helped) = self.tried(scene, &steps)?;
             scene = next;
-            if !has_helped && (is_bold || self.trials >= MOST_TRIALS) {
+            // What was tried in vain is banned, and there may be more.
+            if !has_helped && (is_bold && steps.is_empty() || self.trials >= MOST_TRIALS) {
                 scene = match self.opened_to_part(scene)? {
                     (scene, true) => scene,
                     (scene, false) => return Err(self.refusal(scene)?),
                 };
             }
-            is_bold = !has_helped && !is_bold;
+            is_bold = !has_helped;
         }
     }
 
@@ -258,8 +261,9 @@ impl<'a> Completion<'a> {
         let (components, holes) = (scene.region.components(), scene.region.holes());
         let [too_many, too_few] = off(self.goal.components, components);
         let [holes_too_many, holes_too_few] = off(self.goal.holes, holes);
-        if too_many > 0 {
-            let steps = planner.joins(too_many);
+        let can_be_joined = too_many.min(components - scene.islands().min(components));
+        if can_be_joined > 0 {
+            let steps = planner.joins(can_be_joined);
             if !steps.is_empty() {
                 return steps;
             }
@@ -361,10 +365,29 @@ impl<'a> Completion<'a> {
         }
         let (components, holes) = (scene.region.components(), scene.region.holes());
         let wanted = self.goal_in_words();
-        let [too_many, too_few] = off(self.goal.components, components);
-        let [holes_too_many, holes_too_few] = off(self.goal.holes, holes);
-        let remedy = if too_many > 0 {
-            "what is left cannot be reached by a straight stroke within the area; use a frame, or ask for more components"
+        let [too_many, _] = off(self.goal.components, components);
+        let [holes_too_many, _] = off(self.goal.holes, holes);
+        let (islands, loops) = (scene.islands(), scene.frame_loops()?);
+        let remedy = if too_many > 0 && components == islands {
+            format!(
+                "the area lies in {islands} pieces that have ink, and no stroke within it joins these; ask for {islands} components or more, or draw the pieces so that they hang together where the pen fits"
+            )
+        } else if holes_too_many > 0 && holes_too_many + loops > holes {
+            format!(
+                "the frame goes round the area and round each of its holes, and each of its {loops} loops is a hole of the pattern; ask for {loops} holes or more, or leave out the frame"
+            )
+        } else {
+            self.usual_remedy(&scene.region).to_owned()
+        };
+        Ok(CompleteError::NotMet { wanted, remedy, nearest: Box::new(self.completed(scene)?) })
+    }
+
+    /// What helps where nothing is known of the reason.
+    fn usual_remedy(&self, region: &Region) -> &'static str {
+        let [too_many, too_few] = off(self.goal.components, region.components());
+        let [holes_too_many, holes_too_few] = off(self.goal.holes, region.holes());
+        if too_many > 0 {
+            "what is left cannot be reached within the area past other ink; use a frame, or ask for more components"
         } else if too_few > 0 {
             "nothing is left that a cut would part; ask for fewer components, or use a larger area"
         } else if holes_too_many > 0 {
@@ -372,8 +395,7 @@ impl<'a> Completion<'a> {
         } else {
             debug_assert!(holes_too_few > 0);
             "there is no clear way left across a gap; ask for fewer holes, or use thinner strokes"
-        };
-        Ok(CompleteError::NotMet { wanted, remedy, nearest: Box::new(self.completed(scene)?) })
+        }
     }
 
     fn goal_in_words(&self) -> String {

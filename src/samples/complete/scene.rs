@@ -7,7 +7,7 @@ use super::places::Places;
 use super::work::{Foot, Work};
 use crate::planar::{GridError, Region};
 use crate::samples::cubic::point_at;
-use crate::samples::{Kind, Reconstruction};
+use crate::samples::{Drawing, Kind, Reconstruction};
 
 /// Edges as far as so many samples from the foot of a link are of the ink that it hangs on to: they are near it because the link is.
 const OWN_HOPS: usize = 2;
@@ -157,6 +157,12 @@ impl<'a> Scene<'a> {
     pub fn free_ends(&self) -> Vec<(usize, usize)> {
         let curves = (0..self.work.samples.len()).filter(|&i| self.work.samples[i].kind == Kind::Curve);
         curves.filter_map(|sample| Some((sample, self.free_end(sample)?))).collect()
+    }
+
+    /// How many holes the frame alone makes; there are no fewer in a pattern that has it.
+    pub fn frame_loops(&self) -> Result<usize, GridError> {
+        let frame = Drawing { curves: self.work.frame.clone(), elements: Vec::new() };
+        Ok(self.work.inked(&frame)?.holes())
     }
 
     /// What a new stroke keeps from ink that it does not touch.

@@ -6,15 +6,26 @@ use super::lines::Owner;
 use super::scene::Scene;
 use super::work::{Foot, Work};
 use super::{Change, ChangeKind};
+use crate::samples::Area;
 use crate::samples::border::stretches;
+use crate::samples::cubic::Cubic;
 
 /// What is done to the graph.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Act {
-    /// An edge between two feet, with the handles of its curve.
-    Add { feet: [Foot; 2], handles: [DVec2; 2] },
+    /// Edges one after the other between two feet: where they meet, and the handles of their curves, of which there is one more.
+    Add { feet: [Foot; 2], corners: Vec<DVec2>, handles: Vec<[DVec2; 2]> },
     /// Edges taken away.
     Remove(Vec<usize>),
+}
+
+/// Whether a stroke of curves that go on in one another stays in an area with its middle line; its two ends may be at the border.
+pub(super) fn is_inside(cubics: &[Cubic], area: &Area) -> bool {
+    let last = cubics.len() - 1;
+    cubics.iter().enumerate().all(|(i, cubic)| match stretches(cubic, area)[..] {
+        [[from, until]] => (from == 0.0 || i == 0) && (until == 1.0 || i == last),
+        _ => false,
+    })
 }
 
 /// A change, and how to make it.
@@ -27,9 +38,17 @@ pub(super) struct Step {
 impl Step {
     /// A step that adds a stroke along `link`.
     pub fn add(kind: ChangeKind, link: &Link, confidence: Option<f64>) -> Self {
-        let [a, p, q, b] = link.cubic;
-        let change = Change { kind, from_mm: a, to_mm: b, confidence };
-        Self { change, act: Act::Add { feet: [link.from.foot, link.to.foot], handles: [p - a, q - b] } }
+        let step = Self::along(kind, [link.from.foot, link.to.foot], &[link.cubic]);
+        Self { change: Change { confidence, ..step.change }, ..step }
+    }
+
+    /// A step that adds a stroke of one or more curves, each of which begins where the one before ends.
+    pub fn along(kind: ChangeKind, feet: [Foot; 2], cubics: &[Cubic]) -> Self {
+        let (from_mm, to_mm) = (cubics[0][0], cubics[cubics.len() - 1][3]);
+        let corners = cubics[1..].iter().map(|cubic| cubic[0]).collect();
+        let handles = cubics.iter().map(|&[a, p, q, b]| [p - a, q - b]).collect();
+        let change = Change { kind, from_mm, to_mm, confidence: None };
+        Self { change, act: Act::Add { feet, corners, handles } }
     }
 
     /// A step that takes edges away, from one end of them to the other.
@@ -56,10 +75,17 @@ impl Step {
     /// Makes the change; whether there was anything to do.
     pub fn carry_out(&self, work: &mut Work) -> bool {
         match &self.act {
-            Act::Add { feet, handles } => {
-                let [from, to] = feet.map(|foot| work.sample_at(foot));
+            Act::Add { feet: [from, to], corners, handles } => {
                 let confidence = self.change.confidence.unwrap_or(0.0);
-                work.add(from, to, *handles, confidence).is_some()
+                let mut at = work.sample_at(*from);
+                let feet = corners.iter().map(|&corner| Foot::Ink(corner)).chain([*to]);
+                let mut is_new = false;
+                for (foot, &handles) in feet.zip(handles) {
+                    let next = work.sample_at(foot);
+                    is_new |= work.add(at, next, handles, confidence).is_some();
+                    at = next;
+                }
+                is_new
             }
             Act::Remove(edges) => {
                 edges.iter().for_each(|&edge| work.remove(edge));
