@@ -34,6 +34,11 @@ fn untidied(frame_mm: Option<f64>) -> CompleteOptions {
     CompleteOptions { joins_ends: false, removes_twigs: false, frame_mm, ..CompleteOptions::default() }
 }
 
+fn covers(completed: &Completed, x: f64, y: f64) -> bool {
+    let p = completed.region.grid().snap(DVec2::new(x, y)).unwrap();
+    completed.region.parts().iter().any(|part| part.covers(p))
+}
+
 #[test]
 fn a_fork_that_stands_on_the_frame_is_opened() {
     let mut graph = strokes(&[&[(20.0, 0.0), (30.0, 12.0), (40.0, 0.0)]]);
@@ -113,6 +118,31 @@ fn what_the_area_makes_impossible_is_named() {
         told.contains("each of its 2 loops is a hole") && told.contains("ask for 2 holes or more"),
         "{told}"
     );
+}
+
+#[test]
+fn a_slit_that_bends_is_filled_along_its_middle() {
+    let mut graph = strokes(&[&[(0.0, 22.0), (1.9, 20.0), (1.9, 1.9), (20.0, 1.9), (22.0, 0.0)]]);
+    graph.samples.iter_mut().for_each(|sample| sample.is_given = true);
+    let completed =
+        complete(&graph, &[], &area(60.0, 40.0), &Options::default(), &Goal::default(), &untidied(Some(2.0)));
+    let completed = completed.unwrap();
+    assert_eq!(completed.holes, 1, "{:?}", completed.changes);
+    assert!(completed.changes.iter().all(|change| change.kind == ChangeKind::Fill));
+    assert!(covers(&completed, 1.2, 1.2) && covers(&completed, 1.2, 15.0) && covers(&completed, 15.0, 1.2));
+    assert!(!covers(&completed, 11.0, 11.0), "the straight way between its ends stays open");
+}
+
+#[test]
+fn a_hole_that_nothing_opens_is_filled_if_it_is_small() {
+    let mut graph = strokes(&[&[(20.0, 20.0), (22.6, 20.0), (21.3, 22.2)]]);
+    graph.edges.push(Edge { ends: [0, 2], confidence: 1.0, handles: [DVec2::ZERO; 2] });
+    graph.samples.iter_mut().for_each(|sample| sample.is_given = true);
+    let goal = goal(Some(1), Some(0));
+    let completed =
+        complete(&graph, &[], &area(60.0, 40.0), &Options::default(), &goal, &untidied(None)).unwrap();
+    check(&completed, &goal);
+    assert_eq!(completed.changes.iter().map(|change| change.kind).collect::<Vec<_>>(), [ChangeKind::Fill]);
 }
 
 #[test]

@@ -38,6 +38,8 @@ use work::Work;
 
 /// Regions that are inked while changes are tried, at the most: a refusal takes seconds too.
 const MOST_TRIALS: usize = 120;
+/// How often what is too small to be a hole is looked for and filled.
+const FILLINGS: usize = 3;
 /// A batch is kept when it does at least this part of what it should; the rest is planned anew.
 const GOOD_BATCH: f64 = 0.6;
 
@@ -203,9 +205,18 @@ struct Completion<'a> {
 
 impl<'a> Completion<'a> {
     fn tidied(&mut self, scene: Scene<'a>) -> Result<Scene<'a>, CompleteError> {
-        let mut steps = tidy::tidied(&scene);
-        steps.extend(slits::filled(&scene));
-        Ok(if steps.is_empty() { scene } else { self.carried_out(scene.work, &steps)? })
+        let steps = tidy::tidied(&scene);
+        let scene = if steps.is_empty() { scene } else { self.carried_out(scene.work, &steps)? };
+        let mut scene = scene;
+        // What a dab leaves of a wider hole is one more that is too small.
+        for _ in 0..FILLINGS {
+            let steps = slits::filled(&scene);
+            if steps.is_empty() {
+                break;
+            }
+            scene = self.carried_out(scene.work, &steps)?;
+        }
+        Ok(scene)
     }
 
     /// The pattern with these steps, whatever they do to its counts.
@@ -269,7 +280,11 @@ impl<'a> Completion<'a> {
             }
         }
         if holes_too_many > 0 {
-            let steps = planner.openings(holes_too_many);
+            let mut steps = planner.openings(holes_too_many);
+            if steps.is_empty() {
+                // No ink can go, and these are too small to be missed.
+                steps = slits::closable(scene, holes_too_many, planner.is_banned);
+            }
             if !steps.is_empty() {
                 return steps;
             }
