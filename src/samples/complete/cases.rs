@@ -121,6 +121,23 @@ fn what_the_area_makes_impossible_is_named() {
 }
 
 #[test]
+fn what_runs_along_the_frame_goes() {
+    // A wave whose trough is within the frame, and a stroke that is hidden there.
+    let graph = strokes(&[
+        &[(5.0, 20.0), (15.0, 6.0), (20.0, 1.5), (30.0, 1.2), (40.0, 1.5), (45.0, 6.0), (55.0, 20.0)],
+        &[(15.0, 39.0), (25.0, 38.8), (35.0, 39.0)],
+    ]);
+    let completed =
+        complete(&graph, &[], &area(60.0, 40.0), &Options::default(), &Goal::default(), &untidied(Some(1.5)));
+    let completed = completed.unwrap();
+    let trimmed = completed.changes.iter().filter(|change| change.kind == ChangeKind::Trim).count();
+    assert_eq!(trimmed, 2, "{:?}", completed.changes);
+    assert!(!covers(&completed, 30.0, 1.5) && !covers(&completed, 25.0, 38.6));
+    // What is left of the wave goes on to the frame.
+    assert_eq!(completed.components, 1);
+}
+
+#[test]
 fn a_slit_that_bends_is_filled_along_its_middle() {
     let mut graph = strokes(&[&[(0.0, 22.0), (1.9, 20.0), (1.9, 1.9), (20.0, 1.9), (22.0, 0.0)]]);
     graph.samples.iter_mut().for_each(|sample| sample.is_given = true);

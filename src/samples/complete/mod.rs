@@ -9,6 +9,7 @@
 //! the counts nearer; a batch that did not is tried in halves, down to the single change that is no use and is not tried again. So the
 //! distance to the goal falls with each round, and the work ends.
 
+mod beside;
 #[cfg(test)]
 mod cases;
 mod cuts;
@@ -104,7 +105,7 @@ pub enum ChangeKind {
     Open,
     /// Edges taken away to make two components of one.
     Part,
-    /// A twig taken away.
+    /// A twig taken away, or what of a stroke runs along the frame.
     Trim,
     /// A small component taken away.
     LeaveOut,
@@ -205,6 +206,8 @@ struct Completion<'a> {
 
 impl<'a> Completion<'a> {
     fn tidied(&mut self, scene: Scene<'a>) -> Result<Scene<'a>, CompleteError> {
+        let (work, steps) = beside::parted(&scene);
+        let scene = if steps.is_empty() { scene } else { self.carried_out(work, &steps)? };
         let steps = tidy::tidied(&scene);
         let scene = if steps.is_empty() { scene } else { self.carried_out(scene.work, &steps)? };
         let mut scene = scene;

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use glam::DVec2;
+
 use super::ChangeKind;
 use super::lines::{Lines, Run};
 use super::scene::Scene;
@@ -9,6 +11,10 @@ use super::step::{Link, Port, Step};
 
 /// Ends are joined that turn by less than this: the cosine of 35 degrees. With less, ends bend towards each other in hooks.
 const AHEAD: f64 = 0.82;
+/// An end goes on to the frame where it turns by less than this: the cosine of 55 degrees, so that one that runs along it can go on by 45.
+const FAIR: f64 = 0.57;
+/// Ends with less than this many pens between their middle and the frame go on to it though they run along it.
+const NEAR_PENS: f64 = 1.35;
 /// A twig is shorter than so many pens.
 const TWIG_PENS: f64 = 1.2;
 /// Ends that point at each other are joined across this many spacings while there are too many of them. With less, the gaps that the exemplar
@@ -32,8 +38,8 @@ pub(super) fn tidied(scene: &Scene) -> Vec<Step> {
         steps: Vec::new(),
     };
     tidy.inside = tidy.open.iter().filter(|&&end| tidy.is_inside(end)).count();
-    if completing.frame_mm.is_some() {
-        tidy.join_frame();
+    if let Some(frame_mm) = completing.frame_mm {
+        tidy.join_frame(frame_mm);
     }
     if completing.joins_ends {
         tidy.join_voted();
@@ -95,13 +101,22 @@ impl Tidy<'_, '_> {
         }
     }
 
-    /// Ends near the frame go on to it.
-    fn join_frame(&mut self) {
+    /// Ends near the frame go on to it, if they need not turn much: others stay, as a hook would come of it.
+    fn join_frame(&mut self, frame_mm: f64) {
         let (scene, work) = (self.scene, &self.scene.work);
         for end in self.open.clone() {
             let from = scene.port(end);
-            let at = work.area.nearest(from.at);
-            if at.distance(from.at) < scene.spacing_mm {
+            let depth_mm = work.area.depth_mm(from.at);
+            // An end that runs along the frame and near it goes on ahead, and meets it at half a right angle.
+            let ahead = work.area.nearest(from.at + from.onward.unwrap_or_default() * depth_mm);
+            let nearest = work.area.nearest(from.at);
+            let is_fair = |at: DVec2| from.points_along(at - from.at, FAIR);
+            let at = match depth_mm < 0.5 * frame_mm + NEAR_PENS * work.pen_mm {
+                true => [nearest, ahead].into_iter().find(|&at| is_fair(at)),
+                false => Some(nearest).filter(|&at| is_fair(at)),
+            };
+            let Some(at) = at else { continue };
+            if depth_mm < scene.spacing_mm {
                 let near = self.lines.near(at, 0.0);
                 let Some(owner) = near
                     .iter()

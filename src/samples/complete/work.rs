@@ -205,6 +205,20 @@ impl<'a> Work<'a> {
         middle
     }
 
+    /// The number of the edge that is only this part of an edge that there is, which is split where the part begins and ends.
+    pub fn part_of(&mut self, edge: usize, [from, until]: [f64; 2]) -> usize {
+        let mut part = edge;
+        if until < 1.0 {
+            self.split(part, until);
+            part = self.split[&part].1[0];
+        }
+        if from > 0.0 {
+            self.split(part, from / until);
+            part = self.split[&part].1[1];
+        }
+        part
+    }
+
     /// Adds an edge with the handles of its curve at `from` and at `to`, and gives its number; none where there is one already.
     pub fn add(&mut self, from: usize, to: usize, handles: [DVec2; 2], confidence: f64) -> Option<usize> {
         let (ends, handles) = match from < to {
