@@ -23,7 +23,7 @@ const INK_SHARE: f64 = 0.25;
 /// band, in its strip: along the curve, and across it from its middle.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ChangeReport {
-    /// What it is: `join` of ends along an edge that nearly was, `bridge` between components, `enclose` for a hole, `fill` of one that is
+    /// What it is: `join` of ends along an edge that nearly was, `link` between components, `enclose` for a hole, `fill` of one that is
     /// too small, `open` of a hole, `part` of a component, `trim` of a twig, `leave out` of a small component.
     pub kind: &'static str,
     /// Where it begins.
@@ -38,7 +38,7 @@ impl ChangeReport {
     fn new(change: &samples::Change) -> Self {
         let kind = match change.kind {
             ChangeKind::Join => "join",
-            ChangeKind::Bridge => "bridge",
+            ChangeKind::Link => "link",
             ChangeKind::Enclose => "enclose",
             ChangeKind::Fill => "fill",
             ChangeKind::Open => "open",

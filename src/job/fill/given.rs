@@ -170,6 +170,16 @@ fn dotted(curve: &Curve, step_mm: f64) -> Vec<DVec2> {
     dots
 }
 
+/// A warning of an exemplar that is a single stroke or shape: nothing beside it says how far apart things are.
+pub(super) fn meagre(exemplar: &Drawing) -> Option<String> {
+    (exemplar.curves.len() + exemplar.elements.len() == 1).then(|| {
+        let what = if exemplar.curves.is_empty() { "shape" } else { "stroke" };
+        format!(
+            "{WARNING}the exemplar is one {what}, and nothing beside it says how far apart things are: draw several, as they are to lie"
+        )
+    })
+}
+
 /// A neighbourhood is so many radii across.
 const NEIGHBOURHOOD_RADII: f64 = 2.0;
 
@@ -199,6 +209,15 @@ mod tests {
     use kurbo::BezPath;
 
     use super::*;
+
+    #[test]
+    fn one_stroke_is_told_to_be_too_little() {
+        let curve = || Curve { path: BezPath::from_svg("M0 0H50").unwrap(), width_mm: 1.0 };
+        let mut drawing = Drawing { curves: vec![curve()], elements: Vec::new() };
+        assert!(meagre(&drawing).unwrap().contains("is one stroke"));
+        drawing.curves.push(curve());
+        assert_eq!(meagre(&drawing), None);
+    }
 
     #[test]
     fn strokes_upon_each_other_are_found_and_those_that_cross_are_not() {

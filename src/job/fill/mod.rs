@@ -124,6 +124,7 @@ impl Fill {
         notes.extend(given::cut_clones(&given.clones, &ground.area, pen_mm));
         let (learnt, side_mm) = density_of(&options.exemplar, &exemplar, &linework, chord_mm)?;
         let constants = job.constants(&exemplar, &ground.area);
+        notes.extend(given::meagre(&exemplar));
         notes.extend(given::oversize(&exemplar, &constants.levels));
         let domain_mm2 = ground.domain.area_mm2();
         let ends_wanted = (learnt.dangling_ends * domain_mm2 / census::AREA_MM2).round() as usize;

@@ -90,7 +90,7 @@ fn a_way_through_a_neck_is_found_round_its_corners() {
     let goal = goal(Some(1), Some(0));
     let completed = complete(&graph, &[], &area, &Options::default(), &goal, &untidied(None)).unwrap();
     check(&completed, &goal);
-    assert_eq!(completed.changes.iter().map(|change| change.kind).collect::<Vec<_>>(), [ChangeKind::Bridge]);
+    assert_eq!(completed.changes.iter().map(|change| change.kind).collect::<Vec<_>>(), [ChangeKind::Link]);
     assert!(completed.region.without(area.grown(0.5 * PEN_MM).region()).area_mm2() < 0.01);
 }
 

@@ -55,7 +55,7 @@ impl Planner<'_, '_> {
         let mut lines = Lines::new(&scene.work);
         let mut sets = Sets::new(scene.region.components());
         let mut steps = Vec::new();
-        // An end that would have to turn away makes a hook, and is better left to a bridge.
+        // An end that would have to turn away makes a hook, and is better left to a later one.
         let goes_on = |edge: &&Edge| {
             let [from, to] = edge.ends.map(|end| scene.port(end));
             let way = scene.work.area.way(from.at, to.at);
@@ -98,7 +98,7 @@ impl Planner<'_, '_> {
                     continue;
                 }
                 for link in [link.clone(), link.straightened()] {
-                    let step = Step::add(ChangeKind::Bridge, &link, None);
+                    let step = Step::add(ChangeKind::Link, &link, None);
                     if self.is_possible(&link, &step, &lines, false) {
                         lines.add(&link.cubic, scene.work.pen_mm / 2.0, usize::MAX);
                         sets.join(p, q);

@@ -63,7 +63,7 @@ pub struct CompleteOptions {
     pub leaves_out_small: bool,
     /// Ends are joined along edges of at least this confidence: 0.3.
     pub least_confidence: f64,
-    /// Components are joined, and holes closed, along edges of at least this confidence first: 0.1. With less, a short bridge is as likely.
+    /// Components are joined, and holes closed, along edges of at least this confidence first: 0.1. With less, a short link is as likely.
     pub least_vote: f64,
     /// Ends nearer than this that point at each other are joined; `None` for twice the spacing.
     pub reach_mm: Option<f64>,
@@ -96,7 +96,7 @@ pub enum ChangeKind {
     /// A stroke along an edge that was voted for, or between ends that almost met.
     Join,
     /// A stroke between two components, where the way is shortest.
-    Bridge,
+    Link,
     /// A stroke that closes a hole.
     Enclose,
     /// A dab on a hole that is too small to be one, or on a slit along the frame.

@@ -61,7 +61,7 @@ impl Planner<'_, '_> {
             let Some(road) = self.road(&seen, &is_own) else { continue };
             let Some((ports, places)) = self.stretch(&road.places, &is_own) else { continue };
             let Some(cubics) = smooth(area, &places) else { continue };
-            let step = Step::along(ChangeKind::Bridge, ports.map(|port| port.foot), &cubics);
+            let step = Step::along(ChangeKind::Link, ports.map(|port| port.foot), &cubics);
             if !(self.is_banned)(&step) {
                 sets.join(part, road.to);
                 steps.push(step);
