@@ -140,7 +140,7 @@ fn what_runs_along_the_frame_goes() {
 #[test]
 fn a_slit_that_bends_is_filled_along_its_middle() {
     let mut graph = strokes(&[&[(0.0, 22.0), (1.9, 20.0), (1.9, 1.9), (20.0, 1.9), (22.0, 0.0)]]);
-    graph.samples.iter_mut().for_each(|sample| sample.is_given = true);
+    graph.edges.iter_mut().for_each(|edge| edge.confidence = f64::INFINITY);
     let completed =
         complete(&graph, &[], &area(60.0, 40.0), &Options::default(), &Goal::default(), &untidied(Some(2.0)));
     let completed = completed.unwrap();
@@ -154,7 +154,7 @@ fn a_slit_that_bends_is_filled_along_its_middle() {
 fn a_hole_that_nothing_opens_is_filled_if_it_is_small() {
     let mut graph = strokes(&[&[(20.0, 20.0), (22.6, 20.0), (21.3, 22.2)]]);
     graph.edges.push(Edge { ends: [0, 2], confidence: 1.0, handles: [DVec2::ZERO; 2] });
-    graph.samples.iter_mut().for_each(|sample| sample.is_given = true);
+    graph.edges.iter_mut().for_each(|edge| edge.confidence = f64::INFINITY);
     let goal = goal(Some(1), Some(0));
     let completed =
         complete(&graph, &[], &area(60.0, 40.0), &Options::default(), &goal, &untidied(None)).unwrap();
