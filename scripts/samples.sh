@@ -15,3 +15,7 @@ openwork fixtures/samples/rings.svg --domain fixtures/curves/heart.svg --compone
   --pixels 800 -o docs/pictures/samples-heart.png
 openwork fixtures/samples/leaves.svg --domain band --along ring:70mm --width 24mm --components 1 --frame 1.6mm \
   --view iso --pixels 800 -o docs/pictures/samples-ring.png
+openwork fixtures/samples/branches.svg --domain rect:120x80mm --keep fixtures/curves/begun.svg --seed 4 \
+  --pixels 700 -o docs/pictures/samples-keep.png
+openwork fixtures/samples/leaves.svg --domain rect:120x80mm --clone '0,0,40x30->40,25' --seed 3 \
+  --pixels 700 -o docs/pictures/samples-clone.png

@@ -49,7 +49,16 @@ pub fn cut(graph: &mut Graph, elements: &mut Elements, area: &Area, least_mm: f6
                 }
                 let orientations = vec![handle.to_angle().rem_euclid(std::f64::consts::TAU)];
                 let like = graph.samples[old].clone();
-                graph.samples.push(Sample { at: area.home(at), orientations, is_given: false, ..like });
+                // What goes on from a stroke that was given has a pen of its own.
+                let other = &graph.samples[if old == a { b } else { a }];
+                let width_mm = if like.is_given { other.width_mm } else { like.width_mm };
+                graph.samples.push(Sample {
+                    at: area.home(at),
+                    orientations,
+                    width_mm,
+                    is_given: false,
+                    ..like
+                });
                 stays.push(true);
                 graph.samples.len() - 1
             };
@@ -160,6 +169,20 @@ mod tests {
         assert_eq!((graph.samples.len(), graph.edges.len()), (2, 1));
         let end = graph.samples[graph.edges[0].ends[1]].at;
         assert!(end.distance(DVec2::new(10.0, 5.0)) < 1e-6 && square(10.0).contains(end), "{end}");
+    }
+
+    #[test]
+    fn what_leaves_a_thick_stroke_that_was_given_outside_has_its_own_pen() {
+        let samples = [((5.0, -2.0), 4.0), ((5.0, 6.0), 1.0)];
+        let samples = samples.map(|((x, y), width_mm)| curve_sample(DVec2::new(x, y), width_mm)).to_vec();
+        let edges = vec![Edge { ends: [0, 1], confidence: 1.0, handles: [DVec2::Y, -DVec2::Y] }];
+        let mut graph = Graph { samples, edges, unrealised: Vec::new() };
+        graph.samples[0].is_given = true;
+        cut(&mut graph, &mut Elements::default(), &square(10.0), 0.5);
+        let [edge] = &graph.edges[..] else { panic!("one edge: {graph:?}") };
+        assert!(
+            edge.ends.iter().all(|&end| graph.samples[end].width_mm == 1.0 && !graph.samples[end].is_given)
+        );
     }
 
     /// A square of 10 mm with a slit from x = 6 to x = 6.1, which ends in a corner at y = 8.
