@@ -287,6 +287,7 @@ fn a_box_of_the_exemplar_comes_whole_to_its_place() {
             }
         }
     }
+    room.succeeds("fill twigs.svg --domain rect:120x60mm --iterations 0 --clone 0,0,120x60->0,0 -o out.svg");
     let job = "fill twigs.svg --domain rect:90x60mm -o out.svg --clone";
     room.refuses(&format!("{job} 100,0,40x30->45,25"), 2, &["--clone", "beyond the exemplar", "120.00"]);
     room.refuses(&format!("{job} 0,0,4x4->45,25"), 2, &["--clone", "where nothing is drawn"]);
@@ -333,7 +334,7 @@ fn what_is_kept_comes_out_exactly_and_counts() {
     let region = filled.region();
     // Chords of round outlines lie a little inside.
     let kept = filled.drawing().curves.iter().rev().take(2).cloned();
-    let curves = kept.map(|curve| Curve { width_mm: curve.width_mm - 0.02, ..curve }).collect();
+    let curves = kept.map(|curve| Curve { width_mm: curve.width_mm - 0.01, ..curve }).collect();
     let begun = Drawing { curves, elements: Vec::new() };
     let ink = inked(&begun, region.grid(), 0.25 * Tolerances::default().chord_mm()).unwrap();
     // But for steps of the grid where outlines cross.
@@ -372,9 +373,14 @@ fn what_is_kept_keeps_its_ends_and_its_pen() {
     assert!(low.x > 21.0, "{low}");
     let notes = report["notes"].to_string();
     assert!(
-        notes.contains("1 component(s) of --keep lie beside the domain") && !notes.contains("flat ends"),
+        notes.contains("1 component(s) of --keep lie beside the domain, up to 58.0 mm away")
+            && !notes.contains("flat ends"),
         "{notes}"
     );
+    // A line whose ends are far away goes through the domain all the same.
+    room.draw("through.svg", &format!("<path d='M-100 30H300' {PEN}/>"));
+    let (_, report) = fill(&room, "twigs.svg --domain rect:90x60mm --iterations 0 --keep through.svg");
+    assert!(!report["notes"].to_string().contains("beside the domain"), "{}", report["notes"]);
     // On a strip as well, from whose corner it is drawn.
     room.draw("bar.svg", "<path d='M20 30H60' stroke='red' stroke-width='6'/>");
     let (found, _) = fill(&room, "twigs.svg --domain band --along line:90mm --width 40mm --keep bar.svg");

@@ -34,13 +34,11 @@ pub fn cut(graph: &mut Graph, elements: &mut Elements, area: &Area, least_mm: f6
         .collect();
     for edge in std::mem::take(&mut graph.edges) {
         let [a, b] = edge.ends;
-        let (first, last) = (&graph.samples[a], &graph.samples[b]);
-        if edge.is_given() || first.kind != Kind::Curve {
+        if edge.is_given() || graph.samples[a].kind != Kind::Curve {
             graph.edges.push(edge);
             continue;
         }
-        let to = first.at + area.way(first.at, last.at);
-        let cubic = [first.at, first.at + edge.handles[0], to + edge.handles[1], to];
+        let cubic = edge.cubic(&graph.samples, area);
         for [from, until] in stretches(&cubic, area) {
             let [p, q, r, s] = part(&cubic, from, until);
             let mut foot = |t: f64, old: usize, at: DVec2, handle: DVec2| {

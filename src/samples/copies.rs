@@ -59,6 +59,8 @@ pub struct Copies {
     pub curves: Vec<Curve>,
     /// Whole elements.
     pub placed: Vec<Placed>,
+    /// How many elements are left out, as they would reach beyond the area.
+    pub lost: usize,
 }
 
 impl Copies {
@@ -76,7 +78,7 @@ impl Copies {
         for clone in clones {
             let source = clone.area()?;
             let shift = clone.to_mm - clone.from_mm;
-            let before = copies.curves.len() + copies.placed.len();
+            let before = copies.count();
             for curve in &exemplar.curves {
                 for piece in cut(&curve.path, &source, DVec2::ZERO) {
                     copies.curves.extend(cut(&piece, area, shift).into_iter().filter_map(|path| {
@@ -86,11 +88,14 @@ impl Copies {
                 }
             }
             let inside = elements.placed.iter().filter(|placed| source.contains(placed.similarity.shift));
-            copies.placed.extend(inside.map(|placed| {
+            for placed in inside {
                 let similarity = Similarity { shift: placed.similarity.shift + shift, ..placed.similarity };
-                Placed { similarity, is_given: true, ..*placed }
-            }));
-            if copies.curves.len() + copies.placed.len() == before {
+                match area.covers_all(&elements.classes[placed.class as usize].drawn(&similarity)) {
+                    true => copies.placed.push(Placed { similarity, is_given: true, ..*placed }),
+                    false => copies.lost += 1,
+                }
+            }
+            if copies.count() == before {
                 let [low, high] = [clone.from_mm - clone.half_mm, clone.from_mm + clone.half_mm];
                 let found = format!(
                     "from {:.2}, {:.2} to {:.2}, {:.2} mm, where nothing is drawn",
@@ -103,6 +108,10 @@ impl Copies {
             }
         }
         Ok(copies)
+    }
+
+    fn count(&self) -> usize {
+        self.curves.len() + self.placed.len() + self.lost
     }
 }
 
@@ -204,6 +213,8 @@ mod tests {
         let copies = copied(&[], wide).unwrap();
         let [leaf] = &copies.placed[..] else { panic!("{copies:?}") };
         assert!(leaf.is_given && leaf.similarity.shift.distance(DVec2::new(73.0, 51.0)) < 1e-9);
+        let beside = copied(&[], CloneBox { to_mm: DVec2::new(86.0, 50.0), ..wide }).unwrap();
+        assert_eq!((beside.placed.len(), beside.lost), (0, 1), "it would reach from 97 to 101 mm");
         let message = copied(&["M40 10H60"], CLONE).unwrap_err().to_string();
         assert!(message.contains("from 0.00, 5.00 to 20.00, 15.00 mm, where nothing is drawn"), "{message}");
     }

@@ -71,7 +71,7 @@ pub fn join(graph: &mut Graph, source: &Source, matchings: &[Matching], area: &A
     choose(graph, edges, &wanted, area, options.least_edge);
 }
 
-/// Edges between samples that the maker gave stay.
+/// Edges that the maker gave stay.
 fn given(graph: &Graph) -> impl Iterator<Item = Edge> + '_ {
     graph.edges.iter().filter(|edge| edge.is_given()).copied()
 }

@@ -23,28 +23,40 @@ pub struct Given {
     pub clones: Vec<CloneBox>,
 }
 
-impl Given {
-    /// Refuses clones that lie over one another, or whose middle is outside of the area.
-    pub(super) fn check(&self, area: &Area) -> Result<(), SampleError> {
-        for (i, clone) in self.clones.iter().enumerate() {
-            let to = clone.to_mm;
-            if !area.contains(to) {
-                let found = format!("copied to {:.2}, {:.2} mm, outside of the domain", to.x, to.y);
-                return Err(refused(found, "a place whose middle is inside of it"));
-            }
-            let reach =
-                |other: &CloneBox| area.way(other.to_mm, to).abs().cmplt(clone.half_mm + other.half_mm).all();
-            if let Some(other) = self.clones[..i].iter().find(|&other| reach(other)) {
-                let found = format!(
-                    "copied to {:.2}, {:.2} mm, over what is copied to {:.2}, {:.2} mm",
-                    to.x, to.y, other.to_mm.x, other.to_mm.y
-                );
-                return Err(refused(found, "places beside each other (positions are the middles of boxes)"));
-            }
+/// The clones by their places in the first lap.
+///
+/// # Errors
+/// [`SampleError::Option`] for clones that lie over one another or over themselves, or whose middle is outside of the area.
+pub(super) fn checked(clones: &[CloneBox], area: &Area) -> Result<Vec<CloneBox>, SampleError> {
+    let clones: Vec<CloneBox> =
+        clones.iter().map(|clone| CloneBox { to_mm: area.home(clone.to_mm), ..*clone }).collect();
+    for (i, clone) in clones.iter().enumerate() {
+        let to = clone.to_mm;
+        if !area.contains(to) {
+            let found = format!("copied to {:.2}, {:.2} mm, outside of the domain", to.x, to.y);
+            return Err(refused(found, "a place whose middle is inside of it"));
         }
-        Ok(())
+        if let Some(lap_mm) = area.lap_mm().filter(|&lap_mm| 2.0 * clone.half_mm.x > lap_mm) {
+            let found = format!(
+                "a box {:.2} mm wide, more than once round, which is {lap_mm:.2} mm",
+                2.0 * clone.half_mm.x
+            );
+            return Err(refused(found, "a narrower box"));
+        }
+        let is_upon =
+            |other: &CloneBox| area.way(other.to_mm, to).abs().cmplt(clone.half_mm + other.half_mm).all();
+        if let Some(other) = clones[..i].iter().find(|&other| is_upon(other)) {
+            let found = format!(
+                "copied to {:.2}, {:.2} mm, over what is copied to {:.2}, {:.2} mm",
+                to.x, to.y, other.to_mm.x, other.to_mm.y
+            );
+            return Err(refused(found, "places beside each other (positions are the middles of boxes)"));
+        }
     }
+    Ok(clones)
+}
 
+impl Given {
     /// What is drawn and what is copied, as samples that stay. Elements that are drawn are ink, and no part of the pattern; beside a pattern of
     /// elements alone, strokes are none either.
     pub(super) fn sampled(
@@ -83,13 +95,19 @@ pub fn clear_of(graph: &mut Graph, ink: &Region, area: &Area) {
     let around = Area::new(ink.offset(BESIDE_PENS * pen_mm, BESIDE_PENS * BESIDE_PENS * pen_mm));
     let samples = &graph.samples;
     graph.edges.retain(|edge| {
-        let [a, b] = edge.ends.map(|end| samples[end].at);
-        let to = a + area.way(a, b);
-        let cubic = [a, a + edge.handles[0], to + edge.handles[1], to];
+        let cubic = edge.cubic(samples, area);
         let places = (0..LOOKS).map(|i| point_at(&cubic, (i as f64 + 0.5) / LOOKS as f64));
-        let upon = places.filter(|&p| around.contains(area.home(p))).count();
+        let upon = places.filter(|&p| laps(p, area).any(|p| around.contains(p))).count();
         edge.is_given() || (upon as f64) < UPON * LOOKS as f64
     });
+}
+
+/// A place as it lies in the first lap, and in those beside it, where ink may be drawn that goes over the seam.
+fn laps(p: DVec2, area: &Area) -> impl Iterator<Item = DVec2> {
+    let lap_mm = area.lap_mm();
+    let beside = lap_mm.into_iter().flat_map(|lap_mm| [-lap_mm, lap_mm]);
+    let home = area.home(p);
+    std::iter::once(0.0).chain(beside).map(move |by| home + DVec2::new(by, 0.0))
 }
 
 /// Puts the curves of `given` in the place of those that were given at the level before; edges that led there lead to the nearest of the new ones.
@@ -141,7 +159,7 @@ fn is_given_curve(sample: &super::graph::Sample) -> bool {
 mod tests {
     use super::*;
     use crate::samples::Curve;
-    use crate::samples::area::tests::square;
+    use crate::samples::area::tests::{rolled, square};
     use crate::samples::graph::Edge;
     use crate::samples::ink::inked;
     use crate::samples::sampling::curve_sample;
@@ -166,6 +184,38 @@ mod tests {
         clear_of(&mut graph, &ink, &area);
         let left: Vec<[usize; 2]> = graph.edges.iter().map(|edge| edge.ends).collect();
         assert_eq!(left, [[2, 3], [4, 5], [6, 7], [0, 2]]);
+    }
+
+    #[test]
+    fn strands_upon_ink_that_goes_over_a_seam_go_too() {
+        let area = rolled(40.0, 40.0);
+        let path = kurbo::BezPath::from_svg("M30 20H50").unwrap();
+        let drawing = Drawing { curves: vec![Curve { path, width_mm: 3.0 }], elements: Vec::new() };
+        let ink = inked(&drawing, area.region().grid(), 0.01).unwrap();
+        let sample = |x: f64| curve_sample(DVec2::new(x, 20.0), 1.0);
+        let edge = |a: usize, b: usize| Edge { ends: [a, b], confidence: 0.5, handles: [DVec2::ZERO; 2] };
+        let mut graph = Graph {
+            samples: [2.0, 8.0, 16.0, 22.0].map(sample).to_vec(),
+            edges: vec![edge(0, 1), edge(2, 3)],
+            unrealised: Vec::new(),
+        };
+        clear_of(&mut graph, &ink, &area);
+        assert_eq!(graph.edges.iter().map(|edge| edge.ends).collect::<Vec<_>>(), [[2, 3]]);
+    }
+
+    #[test]
+    fn copies_lie_side_by_side_however_their_place_is_named() {
+        let clone = |x: f64, half: f64| CloneBox {
+            from_mm: DVec2::ZERO,
+            half_mm: DVec2::new(half, 4.0),
+            to_mm: DVec2::new(x, 20.0),
+        };
+        let area = rolled(40.0, 40.0);
+        let message = |clones: &[CloneBox]| checked(clones, &area).unwrap_err().to_string();
+        let two = checked(&[clone(5.0, 4.0), clone(135.0, 4.0)], &area).unwrap();
+        assert!((two[1].to_mm.x - 15.0).abs() < 1e-9, "{two:?}");
+        assert!(message(&[clone(5.0, 4.0), clone(131.0, 4.0)]).contains("over what is copied to 5.00"));
+        assert!(message(&[clone(5.0, 21.0)]).contains("more than once round"));
     }
 
     #[test]

@@ -5,6 +5,9 @@
 
 use glam::DVec2;
 
+use super::area::Area;
+use super::cubic::Cubic;
+
 /// What a sample stands for: its id q(s) and its class (Tu 2020 Table 1).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Kind {
@@ -51,6 +54,13 @@ pub struct Edge {
 }
 
 impl Edge {
+    /// The cubic Bézier curve from its first sample the short way to its second.
+    pub(super) fn cubic(&self, samples: &[Sample], area: &Area) -> Cubic {
+        let [a, b] = self.ends.map(|end| samples[end].at);
+        let to = a + area.way(a, b);
+        [a, a + self.handles[0], to + self.handles[1], to]
+    }
+
     /// Whether it was given by the maker: it is never taken away.
     pub fn is_given(&self) -> bool {
         self.confidence == f64::INFINITY

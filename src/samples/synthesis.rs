@@ -42,6 +42,8 @@ pub struct Synthesis {
     pub given: Drawing,
     /// Curves that were copied from the exemplar, as they lie; copied elements are among the others.
     pub copied: Vec<Curve>,
+    /// How many elements were not copied, as they would reach beyond the area.
+    pub lost_copies: usize,
     /// What happened at each level.
     pub levels: Vec<LevelReport>,
 }
@@ -65,8 +67,8 @@ pub fn synthesize(
     };
     let elements = Elements::of(&exemplar.elements);
     let bounds_mm = roomy(exemplar.bounds_mm().ok_or(SampleError::Empty)?);
-    given.check(wanted)?;
-    let copies = Copies::new(&given.clones, exemplar, &elements, wanted)?;
+    let clones = super::given::checked(&given.clones, wanted)?;
+    let copies = Copies::new(&clones, exemplar, &elements, wanted)?;
     let is_curved = !exemplar.curves.is_empty();
     let levels = options.levels.len();
     let mut output = Output { graph: Graph::default(), placed: copies.placed.clone(), found: Vec::new() };
@@ -85,7 +87,7 @@ pub fn synthesize(
         let fixed = given.sampled(&copies, fixed, area, resolution, is_curved);
         let run = Run { source: &source, elements: &elements, area, options, number, level };
         match number {
-            0 => run.begin(&mut output, fixed, &given.clones),
+            0 => run.begin(&mut output, fixed, &clones),
             _ => run.refine(&mut output, fixed),
         }
         if output.graph.samples.is_empty() {
@@ -106,6 +108,7 @@ pub fn synthesize(
         elements,
         given: given.drawing.clone(),
         copied: copies.curves,
+        lost_copies: copies.lost,
         levels: reports,
     })
 }
@@ -191,7 +194,7 @@ impl Run<'_> {
             let points = self.points(placed.class);
             for (point, p) in (0..).zip(points) {
                 fine.samples.push(Sample {
-                    at: placed.similarity.apply(p),
+                    at: self.area.home(placed.similarity.apply(p)),
                     kind: Kind::Element { class: placed.class, point },
                     orientations: Vec::new(),
                     width_mm: 0.0,

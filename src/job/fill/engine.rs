@@ -24,7 +24,7 @@ const INK_SHARE: f64 = 0.25;
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ChangeReport {
     /// What it is: `join` of ends along an edge that nearly was, `link` between components, `enclose` for a hole, `fill` of one that is
-    /// too small, `open` of a hole, `part` of a component, `trim` of a twig, `leave out` of a small component.
+    /// too small, `open` of a hole, `part` of a component, `trim` of a twig or of what runs along the frame, `leave out` of a small component.
     pub kind: &'static str,
     /// Where it begins.
     pub from_mm: [f64; 2],
@@ -60,6 +60,8 @@ pub(super) struct Pattern {
     /// Components and holes before anything was done for the goal.
     pub(super) own: Counts,
     pub(super) changes: Vec<ChangeReport>,
+    /// What is to be told.
+    pub(super) notes: Vec<String>,
     pub(super) levels: Vec<LevelReport>,
     /// What could not be met by edges of the pattern alone.
     pub(super) lacking: Option<String>,
@@ -127,10 +129,20 @@ pub(super) fn pattern(
         drawing,
         region: completed.region,
         own: Counts { components: completed.own[0], holes: completed.own[1] },
+        notes: lost_copies(synthesis.lost_copies),
         changes: completed.changes.iter().map(ChangeReport::new).collect(),
         levels: synthesis.levels,
         lacking,
     })
+}
+
+fn lost_copies(count: usize) -> Vec<String> {
+    let note = || {
+        format!(
+            "{count} shape(s) of what --clone copies would reach beyond the domain and are left out, as shapes are whole or not there"
+        )
+    };
+    (count > 0).then(note).into_iter().collect()
 }
 
 /// Ink as shapes, one for each component.

@@ -93,6 +93,8 @@ impl Kept {
 /// Refuses a copy of what is not on the exemplar's page, which is as large as `page_mm`, nor near its lines.
 pub(super) fn check_clones(clones: &[CloneSpec], exemplar: &Drawing, page_mm: DVec2) -> Result<(), JobError> {
     let (low, high) = exemplar.bounds_mm().unwrap_or_default();
+    // The SVG library's sizes are `f32`, and a box may end where the page does.
+    let page_mm = page_mm * (1.0 + f64::from(f32::EPSILON));
     let (low, high) = (low.min(DVec2::ZERO), high.max(page_mm));
     let is_on_page = |clone: &&CloneSpec| {
         clone.from_mm.cmpge(low).all() && (clone.from_mm + clone.size_mm).cmple(high).all()
@@ -118,8 +120,12 @@ pub(super) fn cut_clones(clones: &[CloneBox], area: &Area, pen_mm: f64) -> Optio
         !area.covers_all(&[corners.map(|(x, y)| clone.to_mm + half_mm * DVec2::new(x, y)).to_vec()])
     };
     let cut = clones.iter().filter(is_cut).count();
-    (cut > 0)
-        .then(|| format!("{cut} of {} copies reach beyond the domain and are cut off there", clones.len()))
+    (cut > 0).then(|| {
+        format!(
+            "{cut} of {} copies reach beyond the domain, and their strokes are cut off there",
+            clones.len()
+        )
+    })
 }
 
 /// The first two strokes that run upon each other, by their numbers from 0, and where.

@@ -287,9 +287,8 @@ impl Ground {
         if beside.area_mm2() < ROUNDING_MM2 {
             return domain.clone();
         }
-        let index = EdgeIndex::new(domain);
-        let reach_mm = beside.parts().iter().map(|part| self.way_mm(part, &index)).fold(0.0, f64::max)
-            + ROOM_PENS * pen_mm;
+        let ways_mm = beside.parts().iter().map(|part| self.way_mm(&alone(part, grid)));
+        let reach_mm = ways_mm.fold(0.0, f64::max) + ROOM_PENS * pen_mm;
         let around = beside.offset(reach_mm, 0.1 * reach_mm);
         let outlines: Vec<Vec<GridPoint>> =
             domain.parts().iter().map(|part| part.exterior().points().to_vec()).collect();
@@ -299,13 +298,10 @@ impl Ground {
 
     /// A warning of what is kept so far from the domain that the pattern, whose neighbourhoods reach so far, knows nothing of it.
     pub(super) fn far_away(&self, kept: &Region, reach_mm: f64) -> Option<String> {
-        let index = EdgeIndex::new(&self.domain);
-        let way_mm = |part: &Part| self.way_mm(part, &index);
-        let beside = kept
-            .parts()
-            .iter()
-            .filter(|part| !self.domain.parts().iter().any(|d| d.covers(part.exterior().points()[0])));
-        let ways: Vec<f64> = beside.map(way_mm).filter(|&mm| mm > reach_mm).collect();
+        let seen = self.domain.offset(reach_mm, 0.1 * reach_mm);
+        let parts = kept.parts().iter().map(|part| alone(part, self.grid()));
+        let ways: Vec<f64> =
+            parts.filter(|part| part.within(&seen).is_empty()).map(|part| self.way_mm(&part)).collect();
         let farthest_mm = ways.iter().copied().reduce(f64::max)?;
         Some(format!(
             "{WARNING}{} component(s) of --keep lie beside the domain, up to {farthest_mm:.1} mm away, where no neighbourhood of {reach_mm:.1} mm sees them: the pattern does not go on from them, and only bridges reach them; draw them nearer",
@@ -313,11 +309,15 @@ impl Ground {
         ))
     }
 
-    /// How far a part is from the border of the domain, at the nearest.
-    fn way_mm(&self, part: &Part, border: &EdgeIndex) -> f64 {
-        let points = part.exterior().points().iter().map(|&p| self.grid().to_mm(p));
-        let ways = points.map(|p| border.nearest(p).map_or(0.0, |edge| edge.nearest(p).distance(p)));
-        ways.fold(f64::INFINITY, f64::min)
+    /// How far ink beside the domain is from it: from a corner of the one to a side of the other, as they do not cross.
+    fn way_mm(&self, ink: &Region) -> f64 {
+        let least = |of: &Region, to: &Region| {
+            let index = EdgeIndex::new(to);
+            let points = of.contours().flat_map(|contour| contour.points()).map(|&p| of.grid().to_mm(p));
+            let ways = points.filter_map(|p| index.nearest(p).map(|edge| edge.nearest(p).distance(p)));
+            ways.fold(f64::INFINITY, f64::min)
+        };
+        least(ink, &self.domain).min(least(&self.domain, ink))
     }
 
     /// The ink that is inside of the domain.
@@ -330,6 +330,12 @@ impl Ground {
 pub(super) const ROUNDING_MM2: f64 = 1e-4;
 /// Bridges to what is kept beside the domain may be so many pens wide around it.
 const ROOM_PENS: f64 = 3.0;
+
+/// A part as a region.
+fn alone(part: &Part, grid: Grid) -> Region {
+    let outlines: Vec<Vec<GridPoint>> = part.contours().map(|contour| contour.points().to_vec()).collect();
+    Region::fill(grid, &outlines, FillRule::Positive)
+}
 
 /// A drawing elsewhere.
 pub(super) fn moved(drawing: &Drawing, by: DVec2) -> Drawing {

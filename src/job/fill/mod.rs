@@ -136,7 +136,8 @@ impl Fill {
             ends_wanted,
             &mut clock,
         )?;
-        let Pattern { drawing, region, own, changes, levels, lacking } = pattern;
+        let Pattern { drawing, region, own, changes, notes: of_pattern, levels, lacking } = pattern;
+        notes.extend(of_pattern);
         let (drawing, region, cut_mm) = clock
             .time(Stage::Map, || laid(&ground, &drawing, [&kept_lines, &kept_drawn], region, chord_mm))?;
         let kept_ink = ground.kept(&kept_drawn, INK_SHARE * chord_mm)?;

@@ -11,7 +11,7 @@ use super::scene::Scene;
 use super::step::Step;
 use super::work::Work;
 use crate::planar::Sets;
-use crate::samples::cubic::point_at;
+use crate::samples::cubic::{Cubic, point_at};
 
 /// Chords by which an edge is looked at.
 const LOOKS: usize = 16;
@@ -31,9 +31,10 @@ const CRUMB_PENS: f64 = 3.0;
 pub(super) fn parted<'a>(scene: &Scene<'a>) -> (Work<'a>, Vec<Step>) {
     let mut work = scene.work.clone();
     let Some(frame_mm) = work.completing.frame_mm else { return (work, Vec::new()) };
-    let beside_mm = 0.5 * frame_mm + (0.5 + GAP_PENS) * work.pen_mm;
+    let beside_mm = beside_mm(&work, frame_mm);
     let edges: Vec<usize> = work.present().filter(|&edge| may_go(scene, edge)).collect();
-    let stretches = edges.iter().filter_map(|&edge| Some((edge, grazing(&work, edge, beside_mm)?)));
+    let stretches =
+        edges.iter().filter_map(|&edge| Some((edge, grazing(&work, &work.cubic(edge), beside_mm)?)));
     let mut gone: Vec<usize> = Vec::new();
     for (edge, stretch) in long(&work, stretches.collect()) {
         gone.push(work.part_of(edge, stretch));
@@ -66,7 +67,7 @@ fn long(work: &Work, stretches: Vec<(usize, [f64; 2])>) -> Vec<(usize, [f64; 2])
     stretches.into_iter().zip(is_long).filter(|(_, is_long)| *is_long).map(|(stretch, _)| stretch).collect()
 }
 
-/// Whether the maker did not give an edge and no element hangs on it.
+/// Whether an edge is not the maker's, nor goes on from what is, and no element hangs on it.
 fn may_go(scene: &Scene, edge: usize) -> bool {
     let work = &scene.work;
     let holds = |i: u32| {
@@ -74,16 +75,29 @@ fn may_go(scene: &Scene, edge: usize) -> bool {
         let near = scene.lines.near(p, 0.5 * work.width_mm(edge));
         near.iter().any(|(_, line)| matches!(line.owner, Owner::Contour(_)))
     };
-    !work.is_given(edge) && !(0..=4).any(holds)
+    let is_held = work.edges[edge].ends.iter().any(|&end| work.samples[end].is_given);
+    !work.is_given(edge) && !is_held && !(0..=4).any(holds)
 }
 
-/// The stretch of an edge that runs along the border within `beside_mm` of it, by its parameters.
-fn grazing(work: &Work, edge: usize, beside_mm: f64) -> Option<[f64; 2]> {
-    let cubic = work.cubic(edge);
-    if work.area.depth_mm(point_at(&cubic, 0.5)) > beside_mm + work.length_mm(edge) {
+/// The middles of strokes that are beside the frame are nearer to the border than this.
+fn beside_mm(work: &Work, frame_mm: f64) -> f64 {
+    0.5 * frame_mm + (0.5 + GAP_PENS) * work.pen_mm
+}
+
+/// Whether most of a new stroke would run along the frame, as what is taken away there does.
+pub(super) fn is_grazing(work: &Work, cubic: &Cubic) -> bool {
+    let stretch =
+        work.completing.frame_mm.and_then(|frame_mm| grazing(work, cubic, beside_mm(work, frame_mm)));
+    stretch.is_some_and(|[from, until]| until - from > 0.5)
+}
+
+/// The stretch of a curve that runs along the border within `beside_mm` of it, by its parameters.
+fn grazing(work: &Work, cubic: &Cubic, beside_mm: f64) -> Option<[f64; 2]> {
+    let at: Vec<_> = (0..=LOOKS).map(|i| point_at(cubic, i as f64 / LOOKS as f64)).collect();
+    let length_mm: f64 = at.windows(2).map(|w| w[0].distance(w[1])).sum();
+    if work.area.depth_mm(at[LOOKS / 2]) > beside_mm + length_mm {
         return None;
     }
-    let at: Vec<_> = (0..=LOOKS).map(|i| point_at(&cubic, i as f64 / LOOKS as f64)).collect();
     let depths: Vec<f64> = at.iter().map(|&p| work.area.depth_mm(p)).collect();
     let is_along = |&i: &usize| {
         let nearer_mm = (depths[i + 1] - depths[i]).abs();

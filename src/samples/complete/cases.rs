@@ -138,6 +138,34 @@ fn what_runs_along_the_frame_goes() {
 }
 
 #[test]
+fn what_runs_along_the_frame_does_not_come_back() {
+    // A stroke that comes near to the frame and leaves it, in three edges, of which the middle one is beside it.
+    let graph = strokes(&[&[(2.0, 20.0), (14.0, 1.6), (46.0, 1.6), (58.0, 20.0)]]);
+    let options = CompleteOptions { frame_mm: Some(1.5), ..CompleteOptions::default() };
+    let completed =
+        complete(&graph, &[], &area(60.0, 40.0), &Options::default(), &Goal::default(), &options).unwrap();
+    assert!(
+        completed.changes.iter().any(|change| change.kind == ChangeKind::Trim),
+        "{:?}",
+        completed.changes
+    );
+    assert!(!covers(&completed, 30.0, 1.6), "{:?}", completed.changes);
+    assert_eq!(completed.components, 1, "what is left goes on to the frame");
+}
+
+#[test]
+fn what_goes_on_from_a_given_stroke_is_no_free_end_and_has_the_pattern_s_pen() {
+    let mut graph = strokes(&[&[(5.0, 20.0), (15.0, 20.0), (25.0, 20.0)], &[(40.0, 5.0), (40.0, 35.0)]]);
+    (graph.samples[0].is_given, graph.samples[0].width_mm) = (true, 6.0);
+    let (area, completing) = (area(60.0, 40.0), CompleteOptions::default());
+    let work = Work::new(&graph, &[], &area, &Options::default(), &completing);
+    assert!(work.present().all(|edge| work.width_mm(edge) == 1.0));
+    let scene = super::scene::Scene::new(work).unwrap();
+    let ends: Vec<usize> = scene.free_ends().into_iter().map(|(sample, _)| sample).collect();
+    assert_eq!(ends, [2, 3, 4]);
+}
+
+#[test]
 fn a_slit_that_bends_is_filled_along_its_middle() {
     let mut graph = strokes(&[&[(0.0, 22.0), (1.9, 20.0), (1.9, 1.9), (20.0, 1.9), (22.0, 0.0)]]);
     graph.edges.iter_mut().for_each(|edge| edge.confidence = f64::INFINITY);

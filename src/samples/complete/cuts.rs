@@ -132,8 +132,12 @@ impl Planner<'_, '_> {
         let ends = [strand.samples[0], strand.samples[count]];
         // Other ink holds an end as well as another edge does: the frame, an element, a stroke that passes there.
         let holding = ends.map(|end| scene.ink_at(end));
-        let is_held: Vec<bool> =
-            (0..2).map(|side| scene.by_sample[ends[side]].len() > 1 || !holding[side].is_empty()).collect();
+        let is_held: Vec<bool> = (0..2)
+            .map(|side| {
+                let end = ends[side];
+                scene.by_sample[end].len() > 1 || work.samples[end].is_given || !holding[side].is_empty()
+            })
+            .collect();
         let is_loop = ends[0] == ends[1];
         // What is left at an end in the open is a component by itself, and may not be a crumb.
         let leaves_no_crumb = |range: &Range<usize>| {
@@ -166,7 +170,7 @@ impl Planner<'_, '_> {
     /// Around each edge, the least confident first, as many as leave a gap that is seen as one; all if there are no more.
     fn gaps<'t>(&self, strand: &'t Strand) -> impl Iterator<Item = Range<usize>> + use<'t, '_> {
         let work = &self.scene.work;
-        let gap_mm = (GAP_PENS * work.pen_mm).max(work.completing.min_gap_mm) + work.pen_mm;
+        let gap_mm = (GAP_PENS * work.pen_mm).max(self.scene.margin_mm()) + work.pen_mm;
         let confidence = |i: usize| work.edges[strand.edges[i]].confidence;
         let off_middle = |i: usize| (2 * i + 1).abs_diff(strand.edges.len());
         let mut order: Vec<usize> = (0..strand.edges.len()).collect();

@@ -111,8 +111,8 @@ impl Planner<'_, '_> {
                 break;
             }
         }
-        if self.is_bold {
-            steps.extend(self.roads(needed - steps.len(), &mut sets));
+        if self.is_bold && steps.is_empty() {
+            steps = self.roads(needed, &mut sets);
         }
         steps
     }

@@ -32,12 +32,6 @@ const STEP_PENS: f64 = 0.25;
 /// Places that are nearer to one another than this part of the pen are one.
 const LEAST_PENS: f64 = 0.1;
 
-/// A way, with the component that it leads to.
-struct Road {
-    to: usize,
-    places: Vec<DVec2>,
-}
-
 impl Planner<'_, '_> {
     /// Up to `needed` steps of which each joins two of the sets of components, round corners of the area.
     pub(super) fn roads(&self, needed: usize, sets: &mut Sets) -> Vec<Step> {
@@ -58,20 +52,20 @@ impl Planner<'_, '_> {
             if steps.len() == needed || is_own.iter().all(|&is_own| is_own) {
                 break;
             }
-            let Some(road) = self.road(&seen, &is_own) else { continue };
-            let Some((ports, places)) = self.stretch(&road.places, &is_own) else { continue };
+            let Some(way) = self.road(&seen, &is_own) else { continue };
+            let Some((ports, places, met)) = self.stretch(&way, &is_own) else { continue };
             let Some(cubics) = smooth(area, &places) else { continue };
             let step = Step::along(ChangeKind::Link, ports.map(|port| port.foot), &cubics);
             if !(self.is_banned)(&step) {
-                sets.join(part, road.to);
+                sets.join(part, met);
                 steps.push(step);
             }
         }
         steps
     }
 
-    /// The shortest way by corners from the components that are `is_own` to another.
-    fn road(&self, seen: &Seen, is_own: &[bool]) -> Option<Road> {
+    /// The shortest way by corners from the components that are `is_own` to another, by its places.
+    fn road(&self, seen: &Seen, is_own: &[bool]) -> Option<Vec<DVec2>> {
         let scene = self.scene;
         let of = |owner: Owner| scene.part(owner);
         let own = scene.lines.only(|owner| of(owner).is_some_and(|part| is_own[part]));
@@ -79,17 +73,16 @@ impl Planner<'_, '_> {
         let nearest = |lines: &Lines, corner: DVec2| {
             let mut looks = lines.nearest_first(corner).take(MOST_LOOKS);
             let inked = looks.find(|(_, line)| is_seen(scene.work.area, line.nearest(corner).0, corner));
-            inked.map(|(way_mm, line)| (way_mm, line.nearest(corner).0, of(line.owner)))
+            inked.map(|(way_mm, line)| (way_mm, line.nearest(corner).0))
         };
         let begins: Vec<_> = seen.corners.iter().map(|&corner| nearest(&own, corner)).collect();
         let ends: Vec<_> = seen.corners.iter().map(|&corner| nearest(&others, corner)).collect();
-        let start = begins.iter().map(|begin| begin.map_or(f64::INFINITY, |(way_mm, ..)| way_mm)).collect();
+        let start = begins.iter().map(|begin| begin.map_or(f64::INFINITY, |(way_mm, _)| way_mm)).collect();
         let (ways_mm, before) = seen.ways(start);
         let total = |corner: usize| Some(ways_mm[corner] + ends[corner]?.0).filter(|way| way.is_finite());
         let lasts = (0..seen.corners.len()).filter_map(|corner| Some((total(corner)?, corner)));
         let (_, last) = lasts.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let (_, end, to) = ends[last]?;
-        let mut places = vec![end];
+        let mut places = vec![ends[last]?.1];
         let mut corner = last;
         loop {
             places.push(seen.corners[corner]);
@@ -100,16 +93,16 @@ impl Planner<'_, '_> {
         }
         places.push(begins[corner]?.1);
         places.reverse();
-        Some(Road { to: to?, places })
+        Some(places)
     }
 
-    /// What of a way is in the open between two sides, with the ports at its ends.
-    fn stretch(&self, places: &[DVec2], is_own: &[bool]) -> Option<([Port; 2], Vec<DVec2>)> {
+    /// What of a way is in the open between two sides, with the ports at its ends, and the component that it meets: the first one on the way.
+    fn stretch(&self, places: &[DVec2], is_own: &[bool]) -> Option<([Port; 2], Vec<DVec2>, usize)> {
         let (scene, work) = (self.scene, &self.scene.work);
         let reach_mm = 0.5 * work.pen_mm;
         // Whose ink is touched on the way, with how far that is, in corners.
         let mut left: Option<(f64, Line)> = None;
-        let mut met: Option<(f64, Line)> = None;
+        let mut met: Option<(f64, Line, usize)> = None;
         'way: for (i, side) in places.windows(2).enumerate() {
             let count = (side[0].distance(side[1]) / (STEP_PENS * work.pen_mm)).ceil().clamp(1.0, 1e4) as u32;
             for k in 0..=count {
@@ -117,8 +110,8 @@ impl Planner<'_, '_> {
                 for (_, line) in scene.lines.near(side[0].lerp(side[1], part), reach_mm) {
                     match scene.part(line.owner) {
                         Some(part_of) if is_own[part_of] => left = Some((i as f64 + part, *line)),
-                        Some(_) => {
-                            met = Some((i as f64 + part, *line));
+                        Some(part_of) => {
+                            met = Some((i as f64 + part, *line, part_of));
                             break 'way;
                         }
                         None => {}
@@ -126,9 +119,9 @@ impl Planner<'_, '_> {
                 }
             }
         }
-        let ((from, first), (to, last)) = (left?, met?);
+        let ((from, first), (to, last, met)) = (left?, met?);
         let mut way = vec![at(places, from)];
-        way.extend((from.floor() as usize + 1..=to.ceil() as usize - 1).map(|i| places[i]));
+        way.extend((from.floor() as usize + 1..to.ceil() as usize).map(|i| places[i]));
         way.push(at(places, to));
         // The ink is met by the side of the pen: its middle goes on from there, as the way by the corners is narrow.
         let ends = [self.landing(&first, way[0]), self.landing(&last, way[way.len() - 1])];
@@ -137,7 +130,7 @@ impl Planner<'_, '_> {
         way.dedup_by(|a, b| a.distance(*b) < LEAST_PENS * work.pen_mm);
         let count = way.len();
         (way[0], way[count - 1]) = (ends[0].at, ends[1].at);
-        (count > 1).then_some((ends, way))
+        (count > 1).then_some((ends, way, met))
     }
 }
 

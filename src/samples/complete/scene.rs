@@ -139,10 +139,11 @@ impl<'a> Scene<'a> {
             .collect()
     }
 
-    /// The edge of a path that ends at a sample in the open: neither another edge nor other ink is there.
+    /// The edge of a path that ends at a sample in the open: neither another edge nor other ink is there, nor what was given.
     pub fn free_end(&self, sample: usize) -> Option<usize> {
         let [edge] = self.by_sample[sample][..] else { return None };
-        self.ink_at(sample).is_empty().then_some(edge)
+        let is_held = self.work.samples[sample].is_given || !self.ink_at(sample).is_empty();
+        (!is_held).then_some(edge)
     }
 
     /// Whose ink the pen touches at a sample, of what is not of its own path.
@@ -167,6 +168,7 @@ impl<'a> Scene<'a> {
 
     /// What a new stroke keeps from ink that it does not touch.
     pub fn margin_mm(&self) -> f64 {
-        self.work.completing.min_gap_mm.max(4.0 * self.work.completing.chord_mm)
+        // Both outlines may be two chords outside of their pens.
+        self.work.completing.min_gap_mm + 4.0 * self.work.completing.chord_mm
     }
 }

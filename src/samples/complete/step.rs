@@ -87,6 +87,11 @@ impl Step {
                 }
                 is_new
             }
+            // What is trimmed is not to come back by its votes.
+            Act::Remove(edges) if self.change.kind == ChangeKind::Trim => {
+                edges.iter().for_each(|&edge| drop(work.trim(edge)));
+                true
+            }
             Act::Remove(edges) => {
                 edges.iter().for_each(|&edge| work.remove(edge));
                 true

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use glam::DVec2;
 
 use super::ChangeKind;
+use super::beside::is_grazing;
 use super::lines::{Lines, Run};
 use super::scene::Scene;
 use super::step::{Link, Port, Step};
@@ -144,13 +145,9 @@ impl Tidy<'_, '_> {
                 let way = scene.work.area.way(from.at, to.at);
                 // An end that would have to turn back makes a hook.
                 let goes_on = from.points_along(way, AHEAD) && to.points_along(-way, AHEAD);
-                if has_other && goes_on {
-                    self.link(
-                        ChangeKind::Join,
-                        Link::smooth(scene, &from, &to),
-                        Some(edge.confidence),
-                        &edge.ends,
-                    );
+                let link = Link::smooth(scene, &from, &to);
+                if has_other && goes_on && !is_grazing(&scene.work, &link.cubic) {
+                    self.link(ChangeKind::Join, link, Some(edge.confidence), &edge.ends);
                 }
             }
         }
@@ -170,8 +167,10 @@ impl Tidy<'_, '_> {
                     continue;
                 }
                 let (from, to) = (scene.port(a), scene.port(b));
-                if from.points_along(way, AHEAD) && to.points_along(-way, AHEAD) {
-                    pairs.push((way.length(), [b, a], Link::smooth(scene, &to, &from)));
+                let link = Link::smooth(scene, &to, &from);
+                let goes_on = from.points_along(way, AHEAD) && to.points_along(-way, AHEAD);
+                if goes_on && !is_grazing(&scene.work, &link.cubic) {
+                    pairs.push((way.length(), [b, a], link));
                 }
             }
         }

@@ -64,6 +64,7 @@ impl<'a> Work<'a> {
         for sample in samples.iter_mut().filter(|sample| sample.kind == Kind::Curve) {
             sample.width_mm = completing.stroke_mm.unwrap_or(sample.width_mm);
         }
+        own_pens(&mut samples);
         let handles = reconstruct(graph, &[], area, options).handles;
         let edges =
             graph.edges.iter().zip(handles).map(|(edge, handles)| Edge { handles, ..*edge }).collect();
@@ -125,9 +126,7 @@ impl<'a> Work<'a> {
 
     /// The curve of an edge that need not be one of the pattern's.
     pub fn cubic_of(&self, edge: &Edge) -> Cubic {
-        let [a, b] = edge.ends.map(|end| self.samples[end].at);
-        let to = a + self.area.way(a, b);
-        [a, a + edge.handles[0], to + edge.handles[1], to]
+        edge.cubic(&self.samples, self.area)
     }
 
     /// About how long an edge is.
@@ -148,7 +147,7 @@ impl<'a> Work<'a> {
         -self.edges[edge].handles[end].normalize_or_zero()
     }
 
-    /// Whether the maker gave both ends of an edge.
+    /// Whether the maker gave an edge.
     pub fn is_given(&self, edge: usize) -> bool {
         self.edges[edge].is_given()
     }
@@ -233,17 +232,25 @@ impl<'a> Work<'a> {
         Some(self.edges.len() - 1)
     }
 
-    /// Takes an edge away, with all that it was split into.
+    /// Takes an edge away, with all that it was split into, to be one that there is not: its votes are known still.
     pub fn remove(&mut self, edge: usize) {
+        for gone in self.trim(edge) {
+            let place = self.unrealised.partition_point(|other| other.confidence >= gone.confidence);
+            self.unrealised.insert(place, gone);
+        }
+    }
+
+    /// Takes an edge away for good, with all that it was split into, and gives what there was.
+    pub fn trim(&mut self, edge: usize) -> Vec<Edge> {
+        let mut gone = Vec::new();
         if self.is_there[edge] {
-            let confidence = self.edges[edge].confidence;
-            let place = self.unrealised.partition_point(|other| other.confidence >= confidence);
-            self.unrealised.insert(place, self.edges[edge]);
+            gone.push(self.edges[edge]);
         }
         self.is_there[edge] = false;
         if let Some(&(_, parts)) = self.split.get(&edge) {
-            parts.into_iter().for_each(|part| self.remove(part));
+            parts.into_iter().for_each(|part| gone.extend(self.trim(part)));
         }
+        gone
     }
 
     /// The graph as it is now. Samples that have lost their edges are still there, and draw nothing.
@@ -271,5 +278,16 @@ impl<'a> Work<'a> {
     /// What a drawing of it covers, in the plane where it is counted.
     pub fn inked(&self, drawing: &Drawing) -> Result<Region, GridError> {
         self.plane.inked(drawing, self.area.region().grid(), self.completing.chord_mm)
+    }
+}
+
+/// Gives samples of curves that were given the pen of most others: they are where strokes go on from ink that has a pen of its own.
+fn own_pens(samples: &mut [Sample]) {
+    let is_curve = |sample: &&Sample| sample.kind == Kind::Curve && !sample.is_given;
+    let mut widths: Vec<f64> = samples.iter().filter(is_curve).map(|sample| sample.width_mm).collect();
+    widths.sort_by(f64::total_cmp);
+    let Some(&usual_mm) = widths.get(widths.len() / 2) else { return };
+    for sample in samples.iter_mut().filter(|sample| sample.kind == Kind::Curve && sample.is_given) {
+        sample.width_mm = usual_mm;
     }
 }
