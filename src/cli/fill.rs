@@ -307,6 +307,13 @@ fn say_fill(report: &FillReport) {
         report.holes,
         report.domain_mm2 / 100.0
     );
+    if let Some(flat) = report.flat.as_ref().filter(|flat| flat.is_joined) {
+        say!(
+            "laid flat and cut open, as in drawings: {} component(s), {} hole(s)",
+            flat.components,
+            flat.holes
+        );
+    }
     say_densities(report);
     let mut kinds: Vec<&str> = report.changes.iter().map(|change| change.kind).collect();
     kinds.sort_unstable();
@@ -348,5 +355,5 @@ fn say_densities(report: &FillReport) {
     ];
     let told = counts.iter().filter(|(.., is_free)| *is_free);
     let told = told.map(|(what, made, learnt, _)| format!("{made:.1} {what} ({learnt:.1})"));
-    say!("on 100 cm2 (in the exemplar): {}", told.collect::<Vec<_>>().join(", "));
+    say!("on 100 cm2 away from the border (in the exemplar): {}", told.collect::<Vec<_>>().join(", "));
 }

@@ -55,14 +55,19 @@ pub(super) fn notes(
     notes.extend(pressed(outline.squash, cut.sides));
     notes.extend(collapsed(cut, plan, outline));
     notes.extend(crushed(map, shift_mm));
-    notes.extend(map.squeezes().iter().map(|squeeze| {
+    notes.extend(squeezed(map, shift_mm));
+    notes
+}
+
+/// Notes on bends that are too hard for the inner side of a band, with their places moved onto the page.
+pub(super) fn squeezed(map: &BandMap, shift_mm: DVec2) -> impl Iterator<Item = String> + '_ {
+    map.squeezes().iter().map(move |squeeze| {
         let at = DVec2::from(squeeze.position_mm) + shift_mm;
         format!(
             "the curve bends so hard at ({:.1}, {:.1}) mm that the inner side is squeezed from {:.1} to {:.1} mm",
             at.x, at.y, squeeze.reach_mm, squeeze.squeezed_to_mm
         )
-    }));
-    notes
+    })
 }
 
 /// A note on the first of two passes.

@@ -84,7 +84,9 @@ pub enum SampleError {
         wanted: &'static str,
     },
     /// No sample is inside of the area.
-    #[error("no part of the pattern fits in the domain: use a larger one, or a smaller exemplar")]
+    #[error(
+        "nothing is left of the pattern: no part of it fits in the domain, or the exemplar has too little side by side for any of it to be believed in; use a larger domain, a smaller exemplar, or one with more strokes or shapes"
+    )]
     NoRoom,
 }
 

@@ -18,6 +18,8 @@ const SPACING_RANGE: [f64; 2] = [0.02, 0.12];
 const MOST_RADIUS: f64 = 0.3;
 /// The least radius, in parts of the spacing.
 const LEAST_RADIUS: f64 = 1.5;
+/// Where an exemplar has few samples, the least radius in parts of their mean distance, so that the nearest are in it.
+const LEAST_APART: f64 = 1.4;
 /// A part of a chord error that measuring lengths is done with, in parts of the side.
 const MEASURED: f64 = 1e-4;
 
@@ -41,7 +43,9 @@ pub fn default_levels(drawing: &Drawing, levels: usize, room_mm: f64) -> Vec<Lev
         let radius_mm =
             (NEIGHBOURS[number] * size.element_product() / (std::f64::consts::PI * samples)).sqrt();
         let least_mm = LEAST_RADIUS * spacing_mm;
-        let radius_mm = rounded(radius_mm.min(MOST_RADIUS * side_mm).min(room_mm).max(least_mm));
+        let apart_mm = LEAST_APART * (size.element_product() / samples).sqrt();
+        let most_mm = (MOST_RADIUS * side_mm).max(apart_mm).min(room_mm);
+        let radius_mm = rounded(radius_mm.min(most_mm).max(least_mm));
         // Rounding must not make it larger than the area again.
         Level {
             radius_mm: radius_mm.min(room_mm.max(least_mm)),
@@ -85,6 +89,16 @@ mod tests {
             let fits = |level: &Level| level.radius_mm <= room_mm && level.spacing_mm <= level.radius_mm;
             assert!(narrow.iter().all(fits), "{room_mm}: {narrow:?}");
         }
+        // Nine shapes in three rows.
+        let shape = |i: i32| {
+            let (x, y) = (f64::from(11 * (i % 3)), f64::from(11 * (i / 3)));
+            let corners = [(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (0.0, 3.0)];
+            crate::samples::Element {
+                contours: vec![corners.map(|(a, b)| DVec2::new(x + a, y + b)).to_vec()],
+            }
+        };
+        let few = Drawing { curves: Vec::new(), elements: (0..9).map(shape).collect() };
+        assert!(default_levels(&few, 3, 500.0)[0].radius_mm > 11.0);
         // Where a sample is worth nothing it is refused later.
         assert!(default_levels(&drawing, 1, 0.1)[0].radius_mm > 0.1);
     }

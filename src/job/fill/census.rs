@@ -41,6 +41,8 @@ pub struct Density {
     pub holes: f64,
     /// Ends of curves that lie on no other ink, for each 100 square centimetres.
     pub dangling_ends: f64,
+    /// The part of the area that is ink, from 0 to 1.
+    pub ink: f64,
 }
 
 impl Density {
@@ -52,6 +54,7 @@ impl Density {
             components: mean(|d| d.components),
             holes: mean(|d| d.holes),
             dangling_ends: mean(|d| d.dangling_ends),
+            ink: mean(|d| d.ink),
         }
     }
 
@@ -91,6 +94,7 @@ impl Density {
             components: density(components),
             holes: density(holes),
             dangling_ends: density(ends.iter().filter(is_free).count() as f64),
+            ink: ink.area_mm2() / area_mm2,
         }
     }
 }
@@ -270,6 +274,8 @@ mod tests {
             // 100 meshes to the 100 cm2; corners are neglected.
             assert!((found.components - 100.0).abs() < 8.0, "{found:?}");
             assert!((found.holes - 100.0).abs() < 8.0, "{found:?}");
+            // A fifth of each mesh is bar, less where they cross, and a twenty-fifth dot.
+            assert!((found.ink - 0.23).abs() < 0.03, "{found:?}");
         }
     }
 

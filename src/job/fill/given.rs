@@ -5,9 +5,9 @@ use std::path::Path;
 use glam::DVec2;
 use rustc_hash::FxHashMap;
 
-use super::CloneSpec;
 use super::builder::refused;
 use super::ground::moved;
+use super::{CloneSpec, Density};
 use crate::exemplar::{Limits, Linework, ReadOptions};
 use crate::job::error::JobError;
 use crate::job::flat::READ_SHARE;
@@ -90,8 +90,24 @@ impl Kept {
     }
 }
 
-/// Refuses a copy of what is not on the exemplar's page, which is as large as `page_mm`, nor near its lines.
-pub(super) fn check_clones(clones: &[CloneSpec], exemplar: &Drawing, page_mm: DVec2) -> Result<(), JobError> {
+/// Refuses a copy of what is not on the exemplar's page, which is as large as `page_mm`, nor near its lines, and one to a place whose middle is not
+/// in the area, in the coordinates of the maker, which lie by `shift_mm` before those of the area.
+pub(super) fn check_clones(
+    clones: &[CloneSpec],
+    (exemplar, page_mm): (&Drawing, DVec2),
+    (area, shift_mm): (&Area, DVec2),
+) -> Result<(), JobError> {
+    if let Some(clone) = clones.iter().find(|clone| !area.contains(clone.placed(shift_mm).to_mm)) {
+        let middle = clone.to_mm + 0.5 * clone.size_mm;
+        let (low, high) = area.bounds_mm();
+        let (low, high) = (low - shift_mm, high - shift_mm);
+        let found = format!(
+            "the middle of the copy would be at ({:.2}, {:.2}) mm, outside of the domain, which lies from ({:.2}, {:.2}) to ({:.2}, {:.2}) mm inside of its pen",
+            middle.x, middle.y, low.x, low.y, high.x, high.y
+        );
+        return Err(refused("--clone", found, "copy to a place in the domain"));
+    }
+
     let (low, high) = exemplar.bounds_mm().unwrap_or_default();
     // The SVG library's sizes are `f32`, and a box may end where the page does.
     let page_mm = page_mm * (1.0 + f64::from(f32::EPSILON));
@@ -176,6 +192,35 @@ fn dotted(curve: &Curve, step_mm: f64) -> Vec<DVec2> {
     dots
 }
 
+/// The ink of a pattern that has less than this part of the exemplar's is told to be little.
+const LITTLE: f64 = 0.35;
+
+/// A warning of a pattern that has hardly any ink beside the exemplar.
+pub(super) fn sparse(learnt: &Density, made: &Density) -> Option<String> {
+    (made.ink < LITTLE * learnt.ink).then(|| {
+        format!(
+            "{WARNING}only {:.1} % of the domain is ink, and {:.1} % of the exemplar: the pattern found little that suits there; try another --seed, larger or smaller --radii, or a larger domain",
+            100.0 * made.ink,
+            100.0 * learnt.ink
+        )
+    })
+}
+
+/// Pens that differ by more than this part are told to be mixed.
+const MIXED: f64 = 1.2;
+
+/// A note on pens that differ, as a path of the pattern has one.
+pub(super) fn mixed_pens(exemplar: &Drawing) -> Option<String> {
+    let widths = exemplar.curves.iter().map(|curve| curve.width_mm);
+    let (least, most) =
+        widths.fold((f64::INFINITY, 0.0_f64), |(least, most), mm| (least.min(mm), most.max(mm)));
+    (most > MIXED * least).then(|| {
+        format!(
+            "the exemplar has pens from {least:.2} to {most:.2} mm; samples do not tell them apart, and each path of the pattern has the mean of its samples'; --stroke gives all of them one"
+        )
+    })
+}
+
 /// A warning of an exemplar that is a single stroke or shape: nothing beside it says how far apart things are.
 pub(super) fn meagre(exemplar: &Drawing) -> Option<String> {
     (exemplar.curves.len() + exemplar.elements.len() == 1).then(|| {
@@ -215,6 +260,20 @@ mod tests {
     use kurbo::BezPath;
 
     use super::*;
+
+    #[test]
+    fn an_empty_pattern_and_mixed_pens_are_told() {
+        let of = |ink: f64| Density { area_mm2: 1.0, components: 1.0, holes: 1.0, dangling_ends: 1.0, ink };
+        assert!(sparse(&of(0.2), &of(0.04)).unwrap().contains("only 4.0 % of the domain"));
+        assert_eq!(sparse(&of(0.2), &of(0.1)), None);
+        let curve = |width_mm: f64| Curve { path: BezPath::from_svg("M0 0H50").unwrap(), width_mm };
+        let drawing = |pens: &[f64]| Drawing {
+            curves: pens.iter().map(|&mm| curve(mm)).collect(),
+            elements: Vec::new(),
+        };
+        assert!(mixed_pens(&drawing(&[3.0, 0.5])).unwrap().contains("from 0.50 to 3.00 mm"));
+        assert_eq!((mixed_pens(&drawing(&[1.0, 1.1])), mixed_pens(&drawing(&[]))), (None, None));
+    }
 
     #[test]
     fn one_stroke_is_told_to_be_too_little() {

@@ -14,7 +14,7 @@ use crate::domain::{BandMap, CurveSpec, FillDomain};
 use crate::exemplar::{Limits, read_area};
 use crate::job::band::read_curve;
 use crate::job::error::JobError;
-use crate::job::notes::WARNING;
+use crate::job::notes::{WARNING, squeezed};
 use crate::job::part::MARGIN_MM;
 use crate::job::report::InputReport;
 use crate::planar::{Chords, EdgeIndex, FillRule, Grid, GridError, GridPoint, Part, Region, chords};
@@ -217,6 +217,14 @@ impl Ground {
             None => inked(drawing),
             Some(Strip::Open { .. }) => Ok(Region::empty(self.grid())),
             Some(Strip::Along { .. }) => Ok(self.clipped(&inked(&self.laid(drawing, chord_mm))?)),
+        }
+    }
+
+    /// Notes on what becomes of the pattern where the strip bends.
+    pub(super) fn notes(&self) -> Vec<String> {
+        match &self.strip {
+            Some(Strip::Along { map, shift_mm }) => squeezed(map, *shift_mm).collect(),
+            _ => Vec::new(),
         }
     }
 

@@ -112,7 +112,8 @@ impl Fill {
             let (with_room, by) = ground.with_room_for(bounds_mm, pen_mm, chord_mm)?;
             (ground, kept) = (with_room, Some(read.moved(by)));
         }
-        given::check_clones(&options.clones, &exemplar, DVec2::from(linework.page_mm()))?;
+        let learnt_from = (&exemplar, DVec2::from(linework.page_mm()));
+        given::check_clones(&options.clones, learnt_from, (&ground.area, ground.shift_mm))?;
         let [kept_lines, kept_drawn] = match &kept {
             Some(kept) => [kept.drawing.clone(), kept.ink.clone()],
             None => [Drawing::default(), Drawing::default()],
@@ -124,7 +125,9 @@ impl Fill {
         notes.extend(given::cut_clones(&given.clones, &ground.area, pen_mm));
         let (learnt, side_mm) = density_of(&options.exemplar, &exemplar, &linework, chord_mm)?;
         let constants = job.constants(&exemplar, &ground.area);
+        notes.extend(ground.notes());
         notes.extend(given::meagre(&exemplar));
+        notes.extend(given::mixed_pens(&exemplar).filter(|_| options.stroke_mm.is_none()));
         notes.extend(given::oversize(&exemplar, &constants.levels));
         let domain_mm2 = ground.domain.area_mm2();
         let ends_wanted = (learnt.dangling_ends * domain_mm2 / census::AREA_MM2).round() as usize;
@@ -152,6 +155,7 @@ impl Fill {
         };
         let begin_mm = ground.begin_mm();
         let density = density_inside(&drawing, &region, &ground.domain, side_mm);
+        notes.extend(given::sparse(&learnt, &density));
         let mut fill = Self {
             page_mm: ground.page_mm,
             exemplar: InputReport {

@@ -2,6 +2,8 @@
 
 use std::cmp::Ordering;
 
+use std::collections::BTreeMap;
+
 use glam::DVec2;
 use kurbo::PathEl;
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
@@ -91,6 +93,7 @@ pub(super) enum Run {
 /// The middle lines of edges and frame, and the outlines of elements.
 pub(super) struct Lines {
     tree: RTree<Line>,
+    by_owner: BTreeMap<Owner, Vec<Line>>,
     /// Half of the widest pen.
     most_half_mm: f64,
     lap_mm: Option<f64>,
@@ -133,10 +136,15 @@ impl Lines {
         }
         let lap_mm = work.area.lap_mm();
         let most_half_mm = lines.iter().map(|line| line.half_mm).fold(0.0, f64::max);
-        let mut lines_of_all = Self { tree: RTree::new(), most_half_mm, lap_mm };
-        lines_of_all.tree =
-            RTree::bulk_load(lines.into_iter().flat_map(|line| lines_of_all.copies(line)).collect());
-        lines_of_all
+        let empty = Self { tree: RTree::new(), by_owner: BTreeMap::new(), most_half_mm, lap_mm };
+        empty.with(lines.into_iter().flat_map(|line| empty.copies(line)).collect())
+    }
+
+    /// Lines like these in the same plane.
+    fn with(&self, lines: Vec<Line>) -> Self {
+        let mut by_owner: BTreeMap<Owner, Vec<Line>> = BTreeMap::new();
+        lines.iter().for_each(|line| by_owner.entry(line.owner).or_default().push(*line));
+        Self { tree: RTree::bulk_load(lines), by_owner, ..*self }
     }
 
     /// The line where it is, and once round to both sides.
@@ -156,6 +164,7 @@ impl Lines {
         for line in of_cubic(cubic, half_mm, edge) {
             for copy in self.copies(line) {
                 self.tree.insert(copy);
+                self.by_owner.entry(copy.owner).or_default().push(copy);
             }
         }
     }
@@ -192,10 +201,16 @@ impl Lines {
         })
     }
 
+    /// The first of [`Self::nearest_first`] that is of one of some owners. What lies between is not gone through.
+    pub fn nearest_of(&self, owners: &[Owner], p: DVec2) -> Option<&Line> {
+        let lines = owners.iter().filter_map(|owner| self.by_owner.get(owner)).flatten();
+        let ways = lines.map(|line| (line.nearest(p).0.distance(p), line));
+        ways.min_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.order(b.1))).map(|(_, line)| line)
+    }
+
     /// Only the lines of some owners.
     pub fn only(&self, is_wanted: impl Fn(Owner) -> bool) -> Self {
-        let lines = self.tree.iter().filter(|line| is_wanted(line.owner)).copied().collect();
-        Self { tree: RTree::bulk_load(lines), ..*self }
+        self.with(self.tree.iter().filter(|line| is_wanted(line.owner)).copied().collect())
     }
 
     /// How a stroke along `cubic` would lie that may touch only what `is_own`, and keeps `margin_mm` from what it does not touch.

@@ -286,8 +286,7 @@ impl Planner<'_, '_> {
         }
         let own = self.scene.own(port.foot, port.owner);
         let p = port.at + self.scene.work.area.way(port.at, p);
-        let found = self.scene.lines.nearest_first(p).find(|(_, line)| own.contains(&line.owner));
-        found.map_or(port, |(_, line)| self.landing(line, p))
+        self.scene.lines.nearest_of(&own, p).map_or(port, |line| self.landing(line, p))
     }
 
     /// Links that would enclose a hole with more than `hops` edges around it, the cheapest first. `stems` are the edges that hang on to contours by
