@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
-use super::tests::{PEN_MM, area, check, goal, sample};
+use super::tests::{Dice, PEN_MM, area, check, goal, sample};
 use super::*;
 use crate::planar::{FillRule, Grid, GridPoint};
 use crate::samples::Edge;
@@ -135,6 +135,23 @@ fn what_runs_along_the_frame_goes() {
     assert!(!covers(&completed, 30.0, 1.5) && !covers(&completed, 25.0, 38.6));
     // What is left of the wave goes on to the frame.
     assert_eq!(completed.components, 1);
+}
+
+#[test]
+fn what_is_nearest_of_some_is_the_first_of_all_that_is_one_of_them() {
+    let mut dice = Dice(11);
+    let mut place = || (60.0 * dice.roll(), 40.0 * dice.roll());
+    let paths: Vec<Vec<(f64, f64)>> = (0..30).map(|_| vec![place(), place(), place()]).collect();
+    let graph = strokes(&paths.iter().map(Vec::as_slice).collect::<Vec<_>>());
+    let (area, completing) = (area(60.0, 40.0), CompleteOptions::default());
+    let lines = super::lines::Lines::new(&Work::new(&graph, &[], &area, &Options::default(), &completing));
+    for first in 0..55 {
+        let owners = [first, first + 3].map(super::lines::Owner::Edge);
+        let p = DVec2::from(place());
+        let slow = lines.nearest_first(p).find(|(_, line)| owners.contains(&line.owner)).unwrap().1;
+        let fast = lines.nearest_of(&owners, p).unwrap();
+        assert_eq!((slow.owner, slow.from, slow.to), (fast.owner, fast.from, fast.to), "seed 11, {p}");
+    }
 }
 
 #[test]

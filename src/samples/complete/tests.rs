@@ -14,11 +14,11 @@ const CELL_MM: f64 = 6.0;
 pub(super) const PEN_MM: f64 = 1.0;
 
 /// Numbers that are as good as random.
-struct Dice(u64);
+pub(super) struct Dice(pub(super) u64);
 
 impl Dice {
     /// From 0 to 1.
-    fn roll(&mut self) -> f64 {
+    pub(super) fn roll(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 33) as f64 / (1u64 << 31) as f64
     }
