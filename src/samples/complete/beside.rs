@@ -24,6 +24,8 @@ const GRAZING: f64 = 0.5;
 const LONG_PENS: f64 = 8.0;
 /// A stroke that reaches no farther than this many pens beyond that is a swelling of the frame.
 const SWELLING_PENS: f64 = 0.5;
+/// Where more than this part of all would go, nothing goes.
+const MOST_GONE: f64 = 0.5;
 /// What is left and is shorter than this many pens is a crumb.
 const CRUMB_PENS: f64 = 3.0;
 
@@ -40,6 +42,12 @@ pub(super) fn parted<'a>(scene: &Scene<'a>) -> (Work<'a>, Vec<Step>) {
         gone.push(work.part_of(edge, stretch));
     }
     gone.extend(scraps(scene, &work, &gone, beside_mm + SWELLING_PENS * work.pen_mm));
+    // In a strip that is hardly wider than its frame everything is beside it, and is the pattern.
+    let length_mm =
+        |edges: &mut dyn Iterator<Item = usize>| edges.map(|edge| work.length_mm(edge)).sum::<f64>();
+    if length_mm(&mut gone.iter().copied()) > MOST_GONE * length_mm(&mut work.present()) {
+        return (scene.work.clone(), Vec::new());
+    }
     let steps = pieces(&work, &gone)
         .into_values()
         .map(|edges| Step::remove(ChangeKind::Trim, edges, &work))

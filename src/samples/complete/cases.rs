@@ -171,6 +171,19 @@ fn what_runs_along_the_frame_does_not_come_back() {
 }
 
 #[test]
+fn a_strip_that_is_all_beside_its_frame_keeps_its_pattern() {
+    let graph = strokes(&[&[(0.0, 1.0), (20.0, 2.0), (40.0, 1.0), (60.0, 2.0)]]);
+    let trimmed = |height: f64| {
+        let area = area(60.0, height);
+        let options = untidied(Some(0.5));
+        let completed =
+            complete(&graph, &[], &area, &Options::default(), &Goal::default(), &options).unwrap();
+        completed.changes.iter().filter(|change| change.kind == ChangeKind::Trim).count()
+    };
+    assert_eq!(trimmed(3.0), 0);
+}
+
+#[test]
 fn what_goes_on_from_a_given_stroke_is_no_free_end_and_has_the_pattern_s_pen() {
     let mut graph = strokes(&[&[(5.0, 20.0), (15.0, 20.0), (25.0, 20.0)], &[(40.0, 5.0), (40.0, 35.0)]]);
     (graph.samples[0].is_given, graph.samples[0].width_mm) = (true, 6.0);
