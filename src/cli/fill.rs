@@ -8,7 +8,7 @@ use clap::Args;
 use super::args::PartArguments;
 use super::laser::say_cuts;
 use super::progress::Progress;
-use super::run::{BRIDGES_SHOWN, CliError, destinations, say_bridges, say_notes, say_quantities};
+use super::run::{BRIDGES_SHOWN, CliError, destinations, say_bridges, say_flat, say_notes, say_quantities};
 use super::surface::OnModelArguments;
 use super::values;
 use crate::domain::{CurveSpec, FillDomain, Twist};
@@ -307,13 +307,7 @@ fn say_fill(report: &FillReport) {
         report.holes,
         report.domain_mm2 / 100.0
     );
-    if let Some(flat) = report.flat.as_ref().filter(|flat| flat.is_joined) {
-        say!(
-            "laid flat and cut open, as in drawings: {} component(s), {} hole(s)",
-            flat.components,
-            flat.holes
-        );
-    }
+    say_flat(report.flat.as_ref());
     say_densities(report);
     let mut kinds: Vec<&str> = report.changes.iter().map(|change| change.kind).collect();
     kinds.sort_unstable();

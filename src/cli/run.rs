@@ -16,8 +16,8 @@ use crate::analysis::{Analysis, AnalysisError};
 use crate::exemplar::{Exemplar, Limits, ReadOptions};
 use crate::export;
 use crate::job::{
-    BandBuilder, BandReport, BridgesReport, Choice, DEFAULT_TEMPERATURE, Format, JobError, MadeReport,
-    Output, Quantities, READ_SHARE, SlicingChoice, SpaceOptions, Target, write_numbered,
+    BandBuilder, BandReport, BridgesReport, Choice, DEFAULT_TEMPERATURE, FlatPattern, Format, JobError,
+    MadeReport, Output, Quantities, READ_SHARE, SlicingChoice, SpaceOptions, Target, write_numbered,
 };
 use crate::pieces::CostWeights;
 use crate::planar::{Tolerances, TolerancesError};
@@ -278,15 +278,20 @@ pub(super) fn say_band(report: &BandReport) {
         report.length_mm,
         report.seams.jumps
     );
-    if let Some(flat) = report.flat.as_ref().filter(|flat| flat.is_joined) {
+    say_flat(report.flat.as_ref());
+    say_bridges(report.bridges.as_ref(), BRIDGES_SHOWN);
+    say_found(&report.made);
+}
+
+/// What drawings have of a closed strip, which are cut open.
+pub(super) fn say_flat(flat: Option<&FlatPattern>) {
+    if let Some(flat) = flat.filter(|flat| flat.is_joined) {
         say!(
             "laid flat and cut open, as in drawings: {} component(s), {} hole(s)",
             flat.components,
             flat.holes
         );
     }
-    say_bridges(report.bridges.as_ref(), BRIDGES_SHOWN);
-    say_found(&report.made);
 }
 
 /// What was measured, noted and written.

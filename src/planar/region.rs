@@ -36,6 +36,12 @@ impl Part {
         std::iter::once(&self.exterior).chain(&self.holes)
     }
 
+    /// The part as a region by itself, on the grid that it is on.
+    pub fn alone(&self, grid: Grid) -> Region {
+        let outlines: Vec<Vec<GridPoint>> = self.contours().map(|c| c.points().to_vec()).collect();
+        Region::fill(grid, &outlines, FillRule::Positive)
+    }
+
     /// Whether `p` lies strictly inside of the outer boundary and of no hole, exactly.
     pub fn covers(&self, p: GridPoint) -> bool {
         self.exterior.contains(p) && !self.holes.iter().any(|hole| hole.contains(p))

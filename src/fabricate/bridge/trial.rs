@@ -269,7 +269,7 @@ impl<'a> Site<'a> {
             let joined: Vec<&Part> = before.iter().filter(|part| !after.contains(part)).collect();
             let lasting = |&level: &[f64; 2]| {
                 let is_lost =
-                    |part: &&&Part| self.offset(&alone(part, self.ground.grid), -level[0]).is_empty();
+                    |part: &&&Part| self.offset(&part.alone(self.ground.grid), -level[0]).is_empty();
                 let lost = joined.iter().filter(is_lost).count();
                 // Without any, the answer is known.
                 lost > 0 && withstands(&thin, level, lost)
@@ -360,11 +360,6 @@ fn frame(low: GridPoint, high: GridPoint) -> Vec<GridPoint> {
 /// Components less holes.
 fn euler(region: &Region) -> isize {
     region.components() as isize - region.holes() as isize
-}
-
-fn alone(part: &Part, grid: Grid) -> Region {
-    let paths: Vec<Vec<GridPoint>> = part.contours().map(|c| c.points().to_vec()).collect();
-    Region::fill(grid, &paths, FillRule::Positive)
 }
 
 /// What a bridge changes.

@@ -79,9 +79,8 @@ impl Kept {
     }
 
     /// It elsewhere.
-    pub(super) fn moved(&self, by: DVec2) -> Self {
-        let Self { drawing, ink, linework } = self;
-        Self { drawing: moved(drawing, by), ink: moved(ink, by), linework: linework.clone() }
+    pub(super) fn moved(self, by: DVec2) -> Self {
+        Self { drawing: moved(&self.drawing, by), ink: moved(&self.ink, by), ..self }
     }
 
     /// Lower left and upper right corner of its ink, in millimetres.

@@ -17,7 +17,7 @@ use crate::job::error::JobError;
 use crate::job::notes::{WARNING, squeezed};
 use crate::job::part::MARGIN_MM;
 use crate::job::report::InputReport;
-use crate::planar::{Chords, EdgeIndex, FillRule, Grid, GridError, GridPoint, Part, Region, chords};
+use crate::planar::{Chords, EdgeIndex, FillRule, Grid, GridError, GridPoint, Region, chords};
 use crate::samples::{self, Area, Curve, Drawing, Element};
 
 /// The part of the chord error for each: flattening curves before they are mapped, and mapping them.
@@ -213,7 +213,6 @@ impl Ground {
     pub(super) fn kept(&self, drawing: &Drawing, chord_mm: f64) -> Result<Region, JobError> {
         let inked = |drawing: &Drawing| samples::inked(drawing, self.grid(), chord_mm).map_err(grid_error);
         match &self.strip {
-            _ if drawing.elements.is_empty() => Ok(Region::empty(self.grid())),
             None => inked(drawing),
             Some(Strip::Open { .. }) => Ok(Region::empty(self.grid())),
             Some(Strip::Along { .. }) => Ok(self.clipped(&inked(&self.laid(drawing, chord_mm))?)),
@@ -295,7 +294,7 @@ impl Ground {
         if beside.area_mm2() < ROUNDING_MM2 {
             return domain.clone();
         }
-        let ways_mm = beside.parts().iter().map(|part| self.way_mm(&alone(part, grid)));
+        let ways_mm = beside.parts().iter().map(|part| self.way_mm(&part.alone(grid)));
         let reach_mm = ways_mm.fold(0.0, f64::max) + ROOM_PENS * pen_mm;
         let around = beside.offset(reach_mm, 0.1 * reach_mm);
         let outlines: Vec<Vec<GridPoint>> =
@@ -307,7 +306,7 @@ impl Ground {
     /// A warning of what is kept so far from the domain that the pattern, whose neighbourhoods reach so far, knows nothing of it.
     pub(super) fn far_away(&self, kept: &Region, reach_mm: f64) -> Option<String> {
         let seen = self.domain.offset(reach_mm, 0.1 * reach_mm);
-        let parts = kept.parts().iter().map(|part| alone(part, self.grid()));
+        let parts = kept.parts().iter().map(|part| part.alone(self.grid()));
         let ways: Vec<f64> =
             parts.filter(|part| part.within(&seen).is_empty()).map(|part| self.way_mm(&part)).collect();
         let farthest_mm = ways.iter().copied().reduce(f64::max)?;
@@ -338,12 +337,6 @@ impl Ground {
 pub(super) const ROUNDING_MM2: f64 = 1e-4;
 /// Bridges to what is kept beside the domain may be so many pens wide around it.
 const ROOM_PENS: f64 = 3.0;
-
-/// A part as a region.
-fn alone(part: &Part, grid: Grid) -> Region {
-    let outlines: Vec<Vec<GridPoint>> = part.contours().map(|contour| contour.points().to_vec()).collect();
-    Region::fill(grid, &outlines, FillRule::Positive)
-}
 
 /// A drawing elsewhere.
 pub(super) fn moved(drawing: &Drawing, by: DVec2) -> Drawing {

@@ -114,10 +114,8 @@ impl Fill {
         }
         let learnt_from = (&exemplar, DVec2::from(linework.page_mm()));
         given::check_clones(&options.clones, learnt_from, (&ground.area, ground.shift_mm))?;
-        let [kept_lines, kept_drawn] = match &kept {
-            Some(kept) => [kept.drawing.clone(), kept.ink.clone()],
-            None => [Drawing::default(), Drawing::default()],
-        };
+        let nothing = Drawing::default();
+        let [kept_lines, kept_drawn] = kept.as_ref().map_or([&nothing; 2], |kept| [&kept.drawing, &kept.ink]);
         let given = Given {
             drawing: kept_lines.clone(),
             clones: options.clones.iter().map(|clone| clone.placed(ground.shift_mm)).collect(),
@@ -135,15 +133,15 @@ impl Fill {
             (job, &constants),
             &exemplar,
             &ground,
-            (&given, &kept_drawn),
+            (&given, kept_drawn),
             ends_wanted,
             &mut clock,
         )?;
         let Pattern { drawing, region, own, changes, notes: of_pattern, levels, lacking } = pattern;
         notes.extend(of_pattern);
-        let (drawing, region, cut_mm) = clock
-            .time(Stage::Map, || laid(&ground, &drawing, [&kept_lines, &kept_drawn], region, chord_mm))?;
-        let kept_ink = ground.kept(&kept_drawn, INK_SHARE * chord_mm)?;
+        let (drawing, region, cut_mm) =
+            clock.time(Stage::Map, || laid(&ground, &drawing, [kept_lines, kept_drawn], region, chord_mm))?;
+        let kept_ink = ground.kept(kept_drawn, INK_SHARE * chord_mm)?;
         if let Some(kept) = &kept {
             let reach_mm = constants.levels.iter().map(|level| level.radius_mm).fold(0.0, f64::max);
             notes.extend_from_slice(kept.linework.notes());

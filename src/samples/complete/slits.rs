@@ -61,10 +61,11 @@ fn dab(scene: &Scene, hole: &Contour) -> Option<Step> {
         numbers.map(|i| points[i]).collect()
     };
     let sides = [side(1), side(count - 1)];
-    let length_mm = sides.iter().map(|side| lengths(side).last().copied().unwrap_or(0.0)).fold(0.0, f64::max);
+    let lengths = [lengths(&sides[0]), lengths(&sides[1])];
+    let length_mm = lengths.iter().map(|along| along.last().copied().unwrap_or(0.0)).fold(0.0, f64::max);
     let bends = (length_mm / work.pen_mm).ceil().clamp(1.0, f64::from(MOST_BENDS)) as u32;
     let middle = |k: u32| {
-        let [a, b] = [0, 1].map(|i| along(&sides[i], f64::from(k) / f64::from(bends)));
+        let [a, b] = [0, 1].map(|i| along(&sides[i], &lengths[i], f64::from(k) / f64::from(bends)));
         a.midpoint(b)
     };
     let cubics: Vec<Cubic> = (0..bends)
@@ -85,9 +86,8 @@ fn lengths(line: &[DVec2]) -> Vec<f64> {
     std::iter::once(0.0).chain(steps).collect()
 }
 
-/// The place at a part of the length of a line.
-fn along(line: &[DVec2], part: f64) -> DVec2 {
-    let lengths = lengths(line);
+/// The place at a part of the length of a line, whose places are so far along it.
+fn along(line: &[DVec2], lengths: &[f64], part: f64) -> DVec2 {
     let wanted = part * lengths[lengths.len() - 1];
     let next = lengths.partition_point(|&length| length < wanted).clamp(1, line.len().max(2) - 1);
     let side = lengths[next] - lengths[next - 1];

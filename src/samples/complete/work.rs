@@ -88,9 +88,7 @@ impl<'a> Work<'a> {
 
     /// The width that is wanted, or else that of most samples, or else what suits the elements.
     fn usual_pen(&self) -> f64 {
-        let mut widths: Vec<f64> =
-            self.samples.iter().map(|sample| sample.width_mm).filter(|&width| width > 0.0).collect();
-        widths.sort_by(f64::total_cmp);
+        let widths = self.samples.iter().map(|sample| sample.width_mm).filter(|&width| width > 0.0);
         let size = |element: &Element| {
             let outline = element.contours.first().map_or(&[][..], Vec::as_slice);
             let low = outline.iter().fold(DVec2::INFINITY, |low, &p| low.min(p));
@@ -101,7 +99,7 @@ impl<'a> Work<'a> {
             let sizes = self.elements.iter().map(size).sum::<f64>();
             sizes / self.elements.len().max(1) as f64 / PENS_PER_ELEMENT
         };
-        let wanted = self.completing.stroke_mm.or(widths.get(widths.len() / 2).copied());
+        let wanted = self.completing.stroke_mm.or_else(|| median(widths));
         wanted.unwrap_or_else(of_elements).max(4.0 * self.completing.chord_mm)
     }
 
@@ -281,12 +279,18 @@ impl<'a> Work<'a> {
     }
 }
 
+/// The one in the middle; of an even number, the larger one.
+fn median(widths: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut widths: Vec<f64> = widths.collect();
+    widths.sort_by(f64::total_cmp);
+    widths.get(widths.len() / 2).copied()
+}
+
 /// Gives samples of curves that were given the pen of most others: they are where strokes go on from ink that has a pen of its own.
 fn own_pens(samples: &mut [Sample]) {
     let is_curve = |sample: &&Sample| sample.kind == Kind::Curve && !sample.is_given;
-    let mut widths: Vec<f64> = samples.iter().filter(is_curve).map(|sample| sample.width_mm).collect();
-    widths.sort_by(f64::total_cmp);
-    let Some(&usual_mm) = widths.get(widths.len() / 2) else { return };
+    let usual_mm = median(samples.iter().filter(is_curve).map(|sample| sample.width_mm));
+    let Some(usual_mm) = usual_mm else { return };
     for sample in samples.iter_mut().filter(|sample| sample.kind == Kind::Curve && sample.is_given) {
         sample.width_mm = usual_mm;
     }
